@@ -1,0 +1,26 @@
+// What is bolted where: camera intrinsics, camera on the cart, antennas on the camera.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/camera_model.hpp"
+#include "geometry/rigid.hpp"
+
+namespace rfmvo {
+
+struct AntennaCalibration {
+  std::uint8_t port = 1;                                        // reader port, 1-based
+  Eigen::Vector3d p_C_A_m = Eigen::Vector3d::Zero();            // phase centre in the camera frame (the lever arm)
+  Eigen::Vector3d boresight_C = Eigen::Vector3d::UnitZ();       // unit vector of the main beam in the camera frame
+  double lever_arm_sigma_m = 0.005;                             // 1 sigma per axis of p_C_A_m
+};
+
+struct Calibration {
+  CameraModel camera;
+  Rigid3 T_B_C{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), Eigen::Vector3d::Zero()};  // default: looking forward
+  std::vector<AntennaCalibration> antennas;
+};
+
+}  // namespace rfmvo

@@ -1,0 +1,34 @@
+// The joint estimator (docs/estimator.md): one least-squares problem over all tags, all antennas and
+// the whole path: spherical waves, ONE scale per segment, corrections to the odometry, shared port
+// offsets, phase error correlated along the path. Started from the near-field power spectrum.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "config/calibration.hpp"
+#include "config/config.hpp"
+#include "estimator/estimate.hpp"
+#include "estimator/event.hpp"
+#include "estimator/sampling_synchronization.hpp"
+
+namespace rfmvo {
+
+class JointEstimator {
+ public:
+  JointEstimator(const Config& config, const Calibration& calibration);
+  ~JointEstimator();
+
+  void on(const CameraPose& pose);
+  void on(const SampledRead& read);
+
+  // Appends what is known now: a TagEstimate per tag, ScaleEstimate per segment, Trajectory, and (final)
+  // the same from all data.
+  void publish(DeviceTime now, bool final, std::vector<Estimate>& out);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rfmvo

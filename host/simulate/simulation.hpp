@@ -1,0 +1,52 @@
+// A simulated run: the events that the box would have recorded, and the truth beside them. The
+// physics here shares no code with the estimator's phase model.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "config/calibration.hpp"
+#include "estimator/event.hpp"
+
+namespace rfmvo::simulate {
+
+struct Options {
+  std::string scene = "aisle";       // wall | aisle | S3 | S6 (| straight, ... see scene.cpp)
+  std::string images_dir;            // real image sequence with metric truth; empty = synthetic
+  std::uint64_t seed = 1;
+  std::string vo_class = "NOMINAL";  // drift of the CameraPose events: PERFECT | BEST | NOMINAL | DEGRADED | BAD
+  bool frames = true;                // false: no Frame events (fast; for replay from poses)
+};
+
+struct TrueTag {
+  Epc epc;
+  Eigen::Vector3d p_W_X_m;
+};
+
+struct TruePose {
+  DeviceTime time;
+  Rigid3 T_W_C;
+};
+
+// W of the truth: REP-103 axes of the cart at the start, as the estimator defines it; evaluation
+// aligns by SE(3) anyway.
+struct Truth {
+  std::vector<TrueTag> tags;
+  std::vector<TruePose> trajectory;  // at the frame times
+  Calibration calibration;           // the true one (the journal carries the nominal one)
+  double scale_m_per_unit = 1.0;     // of the CameraPose events
+};
+
+using Sink = std::function<Status(const Event&)>;
+
+// Feeds `sink` with the run's events in time order (Start first). Same options, same events, bit for bit.
+[[nodiscard]] Result<Truth> simulate(const Options& options, const Sink& sink);
+
+// tags.csv (epc,x_m,y_m,z_m), trajectory.tum (t tx ty tz qx qy qz qw), antennas.toml
+[[nodiscard]] Status write_truth(const Truth& truth, const std::string& directory);
+[[nodiscard]] Result<Truth> read_truth(const std::string& directory);
+
+}  // namespace rfmvo::simulate
