@@ -141,8 +141,7 @@ bool MapTracker::wants_keyframe() const {
 
 void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
   // At most half of the tracks: the other half must be new parts of the scene.
-  const std::vector<Track> again =
-      rematch(map_, tracks_, pyramid, T_C_V_, options_.camera, options_.max_tracks / 2);
+  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, options_.camera, options_.max_tracks / 2);
   tracks_.insert(tracks_.end(), again.begin(), again.end());
   std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
 

@@ -20,8 +20,8 @@ struct MapTrackerOptions {
 struct TrackedPose {
   ViewPose T_C_V;
   int inliers = 0;
-  double inlier_share = 0.0;  // of the located tracks
-  double median_depth = 1.0;  // units of V
+  double inlier_share = 0.0;               // of the located tracks
+  double median_depth = 1.0;               // units of V
   Matrix6d covariance = Matrix6d::Zero();  // of this pose against the map; step of moved()
 };
 
@@ -54,8 +54,8 @@ class MapTracker {
   Pyramid previous_;
   std::int64_t next_landmark_ = 0;
   DeviceTime pose_time_;
-  ViewPose T_C_V_;        // the newest pose
-  ViewPose motion_;       // T_C2_C1 of the two newest poses
+  ViewPose T_C_V_;   // the newest pose
+  ViewPose motion_;  // T_C2_C1 of the two newest poses
   double motion_s_ = 0.0;
   double median_depth_ = 1.0;
   std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made

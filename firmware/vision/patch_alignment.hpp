@@ -9,8 +9,8 @@
 namespace rfmvo {
 
 struct PatchSearch {
-  cv::Point2f from_px;          // the patch's centre in `from`, full resolution
-  cv::Point2f predicted_px;     // where it should be in `to`
+  cv::Point2f from_px;                                      // the patch's centre in `from`, full resolution
+  cv::Point2f predicted_px;                                 // where it should be in `to`
   Eigen::Matrix2d A_from_to = Eigen::Matrix2d::Identity();  // d px in `from` / d px in `to`
 };
 

@@ -12,11 +12,11 @@
 namespace rfmvo {
 namespace {
 
-constexpr double kMaxViewAngle_rad = 30.0 * kPi / 180.0;  // between the old and the new sight line
+constexpr double kMaxViewAngle_rad = 30.0 * kPi / 180.0;     // between the old and the new sight line
 constexpr double kMaxRealignAngle_rad = 10.0 * kPi / 180.0;  // measured: 8..25 degrees are alike
-constexpr double kMaxSlip_px = 1.5;                       // of a track, that realigning mends; more is another thing
-constexpr int kCoarsestLevel = 2;                         // finds what is up to about 15 px away
-constexpr double kMargin_px = 12.0;                       // room for the patch
+constexpr double kMaxSlip_px = 1.5;                          // of a track, that realigning mends; more is another thing
+constexpr int kCoarsestLevel = 2;                            // finds what is up to about 15 px away
+constexpr double kMargin_px = 12.0;                          // room for the patch
 
 std::optional<Eigen::Vector2d> visible_at(const CameraModel& camera, const Eigen::Vector3d& p_C) {
   if (p_C.z() <= kMinDepth) return std::nullopt;
@@ -70,8 +70,8 @@ Eigen::Matrix2d warp(const ViewPose& T_K_V, const KeyframeObservation& o, const 
 
 }  // namespace
 
-std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const Pyramid& pyramid,
-                           const ViewPose& T_C_V, const CameraModel& camera, int most) {
+std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const Pyramid& pyramid, const ViewPose& T_C_V,
+                           const CameraModel& camera, int most) {
   std::vector<Track> found;
   auto next = tracks.begin();
   const Eigen::Vector3d centre = T_C_V.centre();
@@ -103,8 +103,8 @@ void realign(const Map& map, std::span<Track> tracks, const Pyramid& pyramid, co
     const KeyframeObservation* o = oldest_observation(map, landmark, centre);
     if (!o) continue;
     const Keyframe& from = *map.find(o->keyframe);
-    const auto at = align_patch(from.pyramid, pyramid,
-                                {o->px, track.px, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, 0);
+    const auto at =
+        align_patch(from.pyramid, pyramid, {o->px, track.px, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, 0);
     if (!at || cv::norm(*at - track.px) > kMaxSlip_px) continue;
     track.px = *at;
     track.normalised = unproject(camera, {at->x, at->y});

@@ -13,26 +13,27 @@
 namespace rfmvo {
 namespace {
 
-constexpr int kGoodInliers = 30;           // fewer: degraded
+constexpr int kGoodInliers = 30;  // fewer: degraded
 constexpr double kGoodInlierShare = 0.6;
-constexpr double kGoodSigma = 0.01;        // of the position, over the median depth: above, degraded
-constexpr double kHold_s = 0.25;           // without a pose, then the map is given up ("lost within 0.3 s")
-constexpr double kInflation = 2.5;         // of the motion's sigma: the map's own errors are not in it
+constexpr double kGoodSigma = 0.01;          // of the position, over the median depth: above, degraded
+constexpr double kHold_s = 0.25;             // without a pose, then the map is given up ("lost within 0.3 s")
+constexpr double kInflation = 2.5;           // of the motion's sigma: the map's own errors are not in it
 constexpr std::size_t kMinStartTracks = 30;  // fewer after a loss: still lost, there is nothing to start with
-constexpr double kRefillShare = 0.7;       // of max_tracks, while starting
-constexpr int kArchiveWindows = 4;         // key frames kept for matching back, in windows
+constexpr double kRefillShare = 0.7;         // of max_tracks, while starting
+constexpr int kArchiveWindows = 4;           // key frames kept for matching back, in windows
 
 MapTrackerOptions tracker_options(const VisionConfig& config, const CameraModel& camera) {
   const auto window = static_cast<int>(config.window_keyframes);
-  return {camera, static_cast<int>(config.max_tracks),
+  return {camera,
+          static_cast<int>(config.max_tracks),
           {0.5 * (camera.fx_px + camera.fy_px), config.reprojection_gate_px, rad_from_deg(config.min_parallax_deg),
            window, kArchiveWindows * window}};
 }
 
 VoStatus judge(const TrackedPose& pose) {
   const double sigma = std::sqrt(pose.covariance.bottomRightCorner<3, 3>().trace());
-  const bool good = pose.inliers >= kGoodInliers && pose.inlier_share >= kGoodInlierShare &&
-                    sigma <= kGoodSigma * pose.median_depth;
+  const bool good =
+      pose.inliers >= kGoodInliers && pose.inlier_share >= kGoodInlierShare && sigma <= kGoodSigma * pose.median_depth;
   return good ? VoStatus::kTracking : VoStatus::kDegraded;
 }
 
@@ -55,8 +56,8 @@ struct VisualOdometry::Impl {
   std::optional<MapTracker> tracker;  // once there is a map
   bool was_lost = false;
   std::uint32_t segment = 0;
-  std::vector<Track> tracks;          // before there is a map
-  Pyramid previous;                   // likewise
+  std::vector<Track> tracks;  // before there is a map
+  Pyramid previous;           // likewise
   std::int64_t next_landmark = 0;
   Matrix6d previous_covariance = Matrix6d::Zero();
 };
@@ -126,8 +127,9 @@ VisualOdometry::~VisualOdometry() = default;
 
 CameraPose VisualOdometry::on(const Frame& frame) {
   const CameraModel& camera = impl_->camera;
-  const bool usable = frame.grey && frame.width_px == camera.width_px && frame.height_px == camera.height_px &&
-                      frame.grey->size() == static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
+  const bool usable =
+      frame.grey && frame.width_px == camera.width_px && frame.height_px == camera.height_px &&
+      frame.grey->size() == static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
   if (!usable) {
     CameraPose pose = impl_->without_pose(frame.time);
     pose.status = VoStatus::kLost;

@@ -53,14 +53,16 @@ std::vector<std::vector<std::string>> read_table(const fs::path& path) {
 CameraModel read_camera(const fs::path& path) {
   constexpr std::size_t kFields = 7;  // fx fy cx cy width height model
   const auto rows = read_table(path);
-  if (rows.empty() || rows[0].size() < kFields) throw std::runtime_error(path.string() + ": fx fy cx cy width height model expected");
+  if (rows.empty() || rows[0].size() < kFields)
+    throw std::runtime_error(path.string() + ": fx fy cx cy width height model expected");
   const auto& f = rows[0];
   CameraModel camera;
   camera.fx_px = std::stod(f[0]), camera.fy_px = std::stod(f[1]);
   camera.cx_px = std::stod(f[2]), camera.cy_px = std::stod(f[3]);
   camera.width_px = std::stoi(f[4]), camera.height_px = std::stoi(f[5]);
   if (f[6] != "none" && f[6] != "radtan") throw std::runtime_error(path.string() + ": unknown model " + f[6]);
-  for (std::size_t i = kFields; i < f.size() && i - kFields < camera.radtan.size(); ++i) camera.radtan[i - kFields] = std::stod(f[i]);
+  for (std::size_t i = kFields; i < f.size() && i - kFields < camera.radtan.size(); ++i)
+    camera.radtan[i - kFields] = std::stod(f[i]);
   return camera;
 }
 
@@ -77,7 +79,8 @@ std::vector<TruthPose> read_truth(const fs::path& path) {
   std::vector<TruthPose> truth;
   if (!fs::exists(path)) return truth;
   for (const auto& row : read_table(path)) {
-    if (row.size() >= 4) truth.push_back({std::stod(row[0]), {std::stod(row[1]), std::stod(row[2]), std::stod(row[3])}});
+    if (row.size() >= 4)
+      truth.push_back({std::stod(row[0]), {std::stod(row[1]), std::stod(row[2]), std::stod(row[3])}});
   }
   return truth;
 }
@@ -128,7 +131,8 @@ std::optional<PathError> path_error(const std::vector<CameraPose>& poses, const 
   std::map<std::uint32_t, int> count;
   for (const CameraPose& p : poses) count[p.segment] += has_pose(p);
   if (count.empty() || truth.empty()) return std::nullopt;
-  const auto longest = std::max_element(count.begin(), count.end(), [](auto& a, auto& b) { return a.second < b.second; });
+  const auto longest =
+      std::max_element(count.begin(), count.end(), [](auto& a, auto& b) { return a.second < b.second; });
   std::vector<Eigen::Vector3d> estimate, reference;
   for (const CameraPose& p : poses) {
     if (!has_pose(p) || p.segment != longest->first) continue;
@@ -183,7 +187,8 @@ nlohmann::ordered_json summary(const VoRun& r, const std::optional<PathError>& e
   j["degraded"] = degraded;
   j["first_pose_frame"] = first;
   j["first_pose_s"] = first < r.poses.size() ? (r.poses[first].time - r.poses[0].time).seconds() : -1.0;
-  j["tracked_share_after_start"] = first < r.poses.size() ? static_cast<double>(tracked) / (n - static_cast<double>(first)) : 0.0;
+  j["tracked_share_after_start"] =
+      first < r.poses.size() ? static_cast<double>(tracked) / (n - static_cast<double>(first)) : 0.0;
   j["segments"] = segments.size();
   j["cpu_ms_mean"] = n > 0 ? sum / n : 0.0;
   j["cpu_ms_p50"] = quantile(r.cpu_ms, 0.5);
@@ -221,14 +226,16 @@ void add_vo_command(CLI::App& app, int& exit_code) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("vo", "Run the visual odometry alone on a folder of images");
-  command->add_option("DIR", options->dir, "Folder with images/, times.txt, calib.txt, perhaps groundtruth.txt")->required();
+  command->add_option("DIR", options->dir, "Folder with images/, times.txt, calib.txt, perhaps groundtruth.txt")
+      ->required();
   command->add_option("--tum", options->tum, "Write the path here (TUM format, unscaled)");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &exit_code] {
     try {
       const VoRun result = run(options->dir);
       if (!options->tum.empty()) write_tum(options->tum, result.poses);
-      const auto report = summary(result, path_error(result.poses, read_truth(fs::path(options->dir) / "groundtruth.txt")));
+      const auto report =
+          summary(result, path_error(result.poses, read_truth(fs::path(options->dir) / "groundtruth.txt")));
       if (options->json) {
         std::cout << report.dump(2) << '\n';
       } else {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -30,15 +32,14 @@ CameraModel test_camera() {
 }
 
 // A flat wall 1.5 m ahead, 9 m long: what a cart sees that passes it looking sideways.
-std::vector<TexturedPlane> wall() {
-  return {{texture(2340, 780, 21), {-2.0, -1.5, 1.5}, {9.0, 0, 0}, {0, 3.0, 0}}};
-}
+std::vector<TexturedPlane> wall() { return {{texture(2340, 780, 21), {-2.0, -1.5, 1.5}, {9.0, 0, 0}, {0, 3.0, 0}}}; }
 
 // A shelf: the back wall, and boards 0.4 m before it.
 std::vector<TexturedPlane> shelf() {
   auto planes = wall();
   for (const double y : {-0.55, 0.05, 0.65}) {
-    planes.push_back({texture(2340, 50, static_cast<std::uint64_t>(100 + 10 * y)), {-2.0, y, 1.1}, {9.0, 0, 0}, {0, 0.19, 0}});
+    planes.push_back(
+        {texture(2340, 50, static_cast<std::uint64_t>(100 + 10 * y)), {-2.0, y, 1.1}, {9.0, 0, 0}, {0, 0.19, 0}});
   }
   return planes;
 }
@@ -169,27 +170,30 @@ TEST(VisualOdometry, PureRotationNeverMakesAMap) {
 
 TEST(VisualOdometry, StandstillFromTheStartNeverMakesAMap) {
   cv::RNG noise(5);
-  const Sequence s = run(shelf(), 2.0, [](double) { return Rigid3{}; }, [&noise](cv::Mat& image, double) {
-    cv::Mat grain(image.size(), CV_16SC1), sum;
-    noise.fill(grain, cv::RNG::NORMAL, 0.0, 3.0);
-    image.convertTo(sum, CV_16SC1);
-    sum += grain;
-    sum.convertTo(image, CV_8UC1);
-  });
+  const Sequence s = run(
+      shelf(), 2.0, [](double) { return Rigid3{}; },
+      [&noise](cv::Mat& image, double) {
+        cv::Mat grain(image.size(), CV_16SC1), sum;
+        noise.fill(grain, cv::RNG::NORMAL, 0.0, 3.0);
+        image.convertTo(sum, CV_16SC1);
+        sum += grain;
+        sum.convertTo(image, CV_8UC1);
+      });
   for (const auto& p : s.poses) EXPECT_EQ(p.status, VoStatus::kInitialising);
 }
 
 TEST(VisualOdometry, StandstillAfterAPassHardlyDrifts) {
   cv::RNG noise(6);
   static constexpr double kStop_s = 2.0;
-  const Sequence s = run(shelf(), 6.0, [](double t) { return pass(std::min(t, kStop_s), 0.7); },
-                         [&noise](cv::Mat& image, double) {
-                           cv::Mat grain(image.size(), CV_16SC1), sum;
-                           noise.fill(grain, cv::RNG::NORMAL, 0.0, 3.0);
-                           image.convertTo(sum, CV_16SC1);
-                           sum += grain;
-                           sum.convertTo(image, CV_8UC1);
-                         });
+  const Sequence s = run(
+      shelf(), 6.0, [](double t) { return pass(std::min(t, kStop_s), 0.7); },
+      [&noise](cv::Mat& image, double) {
+        cv::Mat grain(image.size(), CV_16SC1), sum;
+        noise.fill(grain, cv::RNG::NORMAL, 0.0, 3.0);
+        image.convertTo(sum, CV_16SC1);
+        sum += grain;
+        sum.convertTo(image, CV_8UC1);
+      });
   EXPECT_EQ(segments(s).size(), 1U);
   const auto stopped = static_cast<std::size_t>((kStop_s + 0.2) * kRate_hz);
   const Eigen::Vector3d p = s.poses[stopped].T_V_C.p_V_C;
@@ -202,9 +206,11 @@ TEST(VisualOdometry, StandstillAfterAPassHardlyDrifts) {
 
 TEST(VisualOdometry, BlackPicturesAreLostAndANewSegmentStartsAfterThem) {
   constexpr double kFrom_s = 2.0, kTo_s = 3.0;
-  const Sequence s = run(shelf(), 6.0, [](double t) { return pass(t, 0.7); }, [=](cv::Mat& image, double t) {
-    if (t >= kFrom_s && t < kTo_s) image.setTo(0);
-  });
+  const Sequence s = run(
+      shelf(), 6.0, [](double t) { return pass(t, 0.7); },
+      [=](cv::Mat& image, double t) {
+        if (t >= kFrom_s && t < kTo_s) image.setTo(0);
+      });
   for (const auto& p : s.poses) {
     const double t = Duration{p.time.ns}.seconds();
     if (t >= kFrom_s + 0.3 && t < kTo_s) {
@@ -221,11 +227,43 @@ TEST(VisualOdometry, BlackPicturesAreLostAndANewSegmentStartsAfterThem) {
 }
 
 TEST(VisualOdometry, OneDarkFrameDoesNotBreakTheSegment) {
-  const Sequence s = run(shelf(), 3.0, [](double t) { return pass(t, 0.5); }, [](cv::Mat& image, double t) {
-    if (t >= 2.0 && t < 2.03) image.setTo(0);
-  });
+  const Sequence s = run(
+      shelf(), 3.0, [](double t) { return pass(t, 0.5); },
+      [](cv::Mat& image, double t) {
+        if (t >= 2.0 && t < 2.03) image.setTo(0);
+      });
   EXPECT_EQ(segments(s).size(), 1U);
   EXPECT_LT(accuracy(s).error_share, 0.004);
+}
+
+// The published covariance must cover the motion's real error, and not by far too much.
+TEST(VisualOdometry, MotionCovarianceIsHonest) {
+  const Path path = [](double t) { return pass(t, 0.7); };
+  const Sequence s = run(shelf(), 4.0, path);
+  const auto first = std::find_if(s.poses.begin(), s.poses.end(), has_pose) - s.poses.begin();
+  const auto last = static_cast<std::ptrdiff_t>(s.poses.size()) - 1;
+  const double scale =
+      (s.truth_W.back() - s.truth_W[static_cast<std::size_t>(first)]).norm() /
+      (s.poses[static_cast<std::size_t>(last)].T_V_C.p_V_C - s.poses[static_cast<std::size_t>(first)].T_V_C.p_V_C)
+          .norm();
+  double nees = 0.0;
+  int count = 0;
+  for (auto i = static_cast<std::size_t>(first) + 2; i < s.poses.size(); ++i) {
+    const UnscaledPose &a = s.poses[i - 1].T_V_C, &b = s.poses[i].T_V_C;
+    const Rigid3 truth =
+        path(static_cast<double>(i - 1) / kRate_hz).inverse() * path(static_cast<double>(i) / kRate_hz);
+    const Rigid3 step = Rigid3{a.R_V_C, a.p_V_C * scale}.inverse() * Rigid3{b.R_V_C, b.p_V_C * scale};
+    const Rigid3 error = step.inverse() * truth;
+    Eigen::Matrix<double, 6, 1> e;
+    e << so3_log(error.R), error.t / scale;
+    nees += e.dot(s.poses[i].motion_covariance.inverse() * e);
+    ++count;
+  }
+  nees /= count;
+  RecordProperty("nees", std::to_string(nees));
+  // 6 if exact; the sigma is inflated 2.5 times on purpose, so a white error alone gives about 1.
+  EXPECT_GT(nees, 0.2);
+  EXPECT_LT(nees, 6.0);
 }
 
 TEST(VisualOdometry, WrongSizeIsLost) {
@@ -243,7 +281,8 @@ Sequence run_folder(const fs::path& dir) {
   while (std::getline(calib, line) && line[0] == '#') {
   }
   std::istringstream fields(line);
-  fields >> camera.fx_px >> camera.fy_px >> camera.cx_px >> camera.cy_px >> camera.width_px >> camera.height_px >> model;
+  fields >> camera.fx_px >> camera.fy_px >> camera.cx_px >> camera.cy_px >> camera.width_px >> camera.height_px >>
+      model;
   for (double& k : camera.radtan) fields >> k;
   std::map<long, Eigen::Vector3d> positions;  // by rounded ms
   while (std::getline(truth, line)) {

@@ -19,7 +19,8 @@ TEST(Corners, AtMostOnePerCellAndNoneWhereOneIs) {
   EXPECT_LE(corners.size(), 100U);
   const int size = static_cast<int>(std::sqrt(320.0 * 240.0 / 100.0));
   std::set<std::pair<int, int>> cells;
-  for (const auto& c : corners) EXPECT_TRUE(cells.insert({static_cast<int>(c.x) / size, static_cast<int>(c.y) / size}).second);
+  for (const auto& c : corners)
+    EXPECT_TRUE(cells.insert({static_cast<int>(c.x) / size, static_cast<int>(c.y) / size}).second);
   for (const auto& c : find_corners(grey, corners, 100, 100)) {
     EXPECT_FALSE(cells.contains({static_cast<int>(c.x) / size, static_cast<int>(c.y) / size}));
   }

@@ -54,7 +54,8 @@ TEST(Reprojection, PoseJacobianEqualsCentralDifferences) {
   for (int i = 0; i < 6; ++i) {
     const Vector6d d = kStep * Vector6d::Unit(i);
     const Eigen::Vector2d numeric = (reproject(moved(T_C_V, d) * p_V, measured, kFocal_px).error_px -
-                                     reproject(moved(T_C_V, -d) * p_V, measured, kFocal_px).error_px) / (2 * kStep);
+                                     reproject(moved(T_C_V, -d) * p_V, measured, kFocal_px).error_px) /
+                                    (2 * kStep);
     EXPECT_LT((J.col(i) - numeric).norm(), 1e-5) << "column " << i;
   }
 }
@@ -65,8 +66,9 @@ TEST(Reprojection, PointJacobianEqualsCentralDifferences) {
   constexpr double kStep = 1e-6;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(i);
-    const Eigen::Vector2d numeric = (reproject(p_C + d, {0.1, 0.05}, kFocal_px).error_px -
-                                     reproject(p_C - d, {0.1, 0.05}, kFocal_px).error_px) / (2 * kStep);
+    const Eigen::Vector2d numeric =
+        (reproject(p_C + d, {0.1, 0.05}, kFocal_px).error_px - reproject(p_C - d, {0.1, 0.05}, kFocal_px).error_px) /
+        (2 * kStep);
     EXPECT_LT((r.d_camera_point.col(i) - numeric).norm(), 1e-5) << "column " << i;
   }
 }
@@ -138,7 +140,8 @@ BundleProblem make_bundle(const Scene& scene) {
   bundle.points_V = scene.points_V;
   for (std::size_t p = 0; p < scene.points_V.size(); ++p) {
     for (std::size_t v = 0; v < scene.views.size(); ++v) {
-      bundle.observations.push_back({static_cast<int>(v), static_cast<int>(p), seen(scene.views[v], scene.points_V[p])});
+      bundle.observations.push_back(
+          {static_cast<int>(v), static_cast<int>(p), seen(scene.views[v], scene.points_V[p])});
     }
   }
   return bundle;
