@@ -186,7 +186,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
   solution.covariance = covariance_of(residuals, solution.sigma_m, state.gamma);
   solution.p_X_m = state.p_X_m;
   solution.gamma = state.gamma;
-  solution.found = sane(state);
+  solution.found = sane(state) && solution.converged;
   return solution;
 }
 

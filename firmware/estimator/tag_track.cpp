@@ -78,6 +78,7 @@ void TagTrack::search(const PhaseCalibration& phases) {
       search_spectrum(arrays, range, rad_from_deg(config_.angle_step_deg), config_.scale_step);
   if (!peak.found) return;
   for (std::size_t j = 0; j < record.members.size(); ++j) record.members[j].angles = peak.angles[j];
+  record.range = range;
   record.gamma = peak.gamma;
   records_.push_back(std::move(record));
 }
@@ -153,6 +154,10 @@ SolvedArray TagTrack::solve(Record& record, const PhaseCalibration& phases, cons
   options.fix_cycles = config_.fix_cycles;
   out.solution = joint_optimization(terms, record.gamma, options);
   record.solved = true;
+  // Differs from Eq. (18): its minimisation is free of the limits (4), (5). It can run off to a scale that
+  // they exclude, and a long array has a small HDOP, so that it would be selected.
+  if (config_.fix_scale_range && (out.solution.gamma < record.range.min || out.solution.gamma > record.range.max))
+    out.solution.found = false;
   if (!out.solution.found) return out;
 
   for (std::size_t j = 0; j < terms.size(); ++j) record.members[j].angles = out.solution.angles[j];

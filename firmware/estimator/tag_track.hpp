@@ -57,6 +57,7 @@ class TagTrack {
   };
   struct Record {
     std::vector<Member> members;
+    ScaleRange range;  // Eq. (4), (5)
     double gamma = 0.0;
     bool solved = false;
   };
