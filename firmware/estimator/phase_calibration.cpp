@@ -10,8 +10,9 @@ namespace {
 constexpr double kFirstLength_m = 0.0;
 // 25 cm is 0.02 rad over one 500 kHz channel and 0.27 rad over the 26 MHz of the widest band.
 constexpr double kLengthStep_m = 0.25;
-constexpr std::int64_t kMinHops = 40;    // with 0.4 of coherence, 4 sigma above chance
-constexpr double kMinCoherence = 0.4;    // of the remaining phase steps
+constexpr std::int64_t kMinHops = 40;
+// |sum|^2 / hops is 1 on average by chance, and above 16 once in 10^7 times: e^-16 per candidate.
+constexpr double kMinSignificance = 16.0;
 constexpr double kMaxGap_s = 0.5;        // farther apart, the motion between the reads hides the slope
 
 double candidate_m(int n) { return kFirstLength_m + kLengthStep_m * n; }
@@ -40,11 +41,12 @@ void PhaseCalibration::on_pair(const TagRead& before, const TagRead& after) {
     auto& sum = port.sums[static_cast<std::size_t>(n)];
     sum += value;
     value *= turn;
-    if (sum.real() > port.sums[static_cast<std::size_t>(best)].real()) best = n;
+    if (std::norm(sum) > std::norm(port.sums[static_cast<std::size_t>(best)])) best = n;
   }
   ++port.hops;
-  const double coherence = port.sums[static_cast<std::size_t>(best)].real() / static_cast<double>(port.hops);
-  port.best = port.hops >= kMinHops && coherence >= kMinCoherence ? best : -1;
+  // The size of the sum, not its real part: motion towards the tag turns all steps alike.
+  const double significance = std::norm(port.sums[static_cast<std::size_t>(best)]) / static_cast<double>(port.hops);
+  port.best = port.hops >= kMinHops && significance >= kMinSignificance ? best : -1;
 }
 
 std::optional<double> PhaseCalibration::excess_length_m(std::uint8_t port) const {
@@ -58,7 +60,7 @@ std::optional<double> PhaseCalibration::phase_step_rad(const TagRead& before, co
   if (df == 0.0) return after.phase.rad() - before.phase.rad();
   const std::optional<double> length_m = excess_length_m(after.port);
   if (!length_m) return std::nullopt;
-  const double calibrated = std::fmod(after.phase.rad() - phase_of(*length_m, df) , kTwoPi);
+  const double calibrated = std::fmod(after.phase.rad() - phase_of(*length_m, df), kTwoPi);
   return (calibrated < 0.0 ? calibrated + kTwoPi : calibrated) - before.phase.rad();
 }
 

@@ -32,7 +32,7 @@ class PhaseCalibration {
   struct Port {
     std::array<std::complex<double>, kLengths> sums{};  // per candidate: sum of exp(j remaining phase step)
     std::int64_t hops = 0;
-    int best = -1;  // candidate of the largest real sum; -1: not known yet
+    int best = -1;  // candidate of the largest sum; -1: not known yet
   };
   std::map<std::uint8_t, Port> ports_;
 };
