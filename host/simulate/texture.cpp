@@ -178,9 +178,9 @@ TexturePointer clutter_texture(Random& random) {
 
 TexturePointer plaster_texture(Random& random) {
   Sheet sheet(10, 165.0F);
-  for (int i = 0; i < 260; ++i) {
+  for (int i = 0; i < 900; ++i) {
     const double x = random.uniform(), y = random.uniform(), r = random.uniform(0.001, 0.004);
-    sheet.disc(x, y, r, static_cast<float>(random.uniform(80, 210)));
+    sheet.disc(x, y, r, static_cast<float>(random.uniform(70, 225)));
   }
   for (const int cells : {4, 64, 256}) sheet.noise(cells, 7.0F, random);
   return sheet.texture();
