@@ -71,6 +71,10 @@ struct JournalConfig {
   std::string directory = "";         // empty: no journal
 };
 
+struct DaemonConfig {
+  std::string calibration = "";       // TOML file: camera, mounting, antennas
+};
+
 struct Config {
   EstimatorConfig estimator;
   SyncConfig sync;
@@ -80,6 +84,7 @@ struct Config {
   LcmConfig lcm;
   CameraConfig camera;
   JournalConfig journal;
+  DaemonConfig daemon;
 };
 
 }  // namespace rfmvo
