@@ -1,0 +1,27 @@
+// The drawing part of a gnuplot script: data blocks, then one `plot` command over them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rfmvo::report {
+
+// One data block of the script and how it is drawn; blocks without data are not drawn.
+struct Layer {
+  std::string data;
+  std::string style;
+};
+
+class Script {
+ public:
+  void add(Layer layer) {
+    if (!layer.data.empty()) layers_.push_back(std::move(layer));
+  }
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<Layer> layers_;
+};
+
+}  // namespace rfmvo::report
