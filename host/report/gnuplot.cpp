@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -42,6 +43,16 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+// What gnuplot complained about, on one line.
+std::string first_words(const fs::path& log) {
+  constexpr std::size_t kMaxLength = 300;
+  const auto said = read_whole_file(log);
+  if (!said) return "no message";
+  std::string words = said.value().substr(0, kMaxLength);
+  std::replace(words.begin(), words.end(), '\n', ' ');
+  return words;
+}
+
 // -d: the user's own settings would change the page.
 Status run_gnuplot(const fs::path& script, const fs::path& log) {
   posix_spawn_file_actions_t actions;
@@ -60,9 +71,7 @@ Status run_gnuplot(const fs::path& script, const fs::path& log) {
   while (::waitpid(child, &state, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(state) && WEXITSTATUS(state) == 0) return Done{};
-  const auto said = read_whole_file(log);
-  return Error{ErrorCode::kUnsupported, "failed: " + (said ? said.value().substr(0, 500) : std::string("no message")),
-               "gnuplot"};
+  return Error{ErrorCode::kUnsupported, "failed: " + first_words(log), "gnuplot"};
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
@@ -88,6 +97,13 @@ std::string inline_svg(const std::string& svg_file, const Plot& plot) {
       svg.erase(open, close + closing.size() - open);
     }
   }
+  // Tooltips with the numbers of the layers.
+  const std::string layer_title = "<title>" + plot.name + "_plot_";
+  for (std::size_t at = 0; (at = svg.find(layer_title, at)) != std::string::npos;) {
+    const std::size_t close = svg.find("</title>", at);
+    if (close == std::string::npos) break;
+    svg.erase(at, close + 8 - at);  // 8: the length of "</title>"
+  }
   // Every file has the same ids; in one page they must differ.
   replace_all(svg, "id='gp", "id='" + plot.name + "_gp");
   replace_all(svg, "id=\"gp", "id=\"" + plot.name + "_gp");
@@ -95,6 +111,7 @@ std::string inline_svg(const std::string& svg_file, const Plot& plot) {
   replace_all(svg, "url(#gp", "url(#" + plot.name + "_gp");
   for (const PlotColour& colour : {kInk, kGrid, kPath, kGood, kDoubt, kStale, kTruth}) {
     replace_all(svg, colour.svg, colour.css);
+    replace_all(svg, colour.svg_text, colour.css);
   }
   return fmt::format(
       "<svg class=\"plot\" role=\"img\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" "

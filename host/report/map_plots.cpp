@@ -17,6 +17,10 @@ constexpr double kMargin_m = 0.4;       // around everything shown
 constexpr std::size_t kMaxLabels = 80;  // more numbers than that hide the map
 constexpr double kFilledMax_m = 1.0;    // larger ellipses are outlines only
 
+constexpr double kReach_m = 6.0;        // other positions farther than this from everything else stay outside
+constexpr int kWidth = 1000;
+constexpr double kLeft_px = 70, kRight_px = 15, kTop_px = 12, kBottom_px = 52;
+
 struct View {
   int right = 0, up = 1;  // coordinates of W
   const char* name = "";
@@ -59,6 +63,18 @@ std::string ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covari
   return text + "\n";
 }
 
+// The map in the making: layers, and the legend of those that show something.
+struct Sketch {
+  View view;
+  Script script;
+  std::vector<LegendEntry> legend;
+
+  void add(Layer layer) { script.add(std::move(layer)); }
+  void add(Layer layer, const PlotColour& colour, const char* symbol, const char* text) {
+    if (script.add(std::move(layer))) legend.push_back({colour.css, symbol, text});
+  }
+};
+
 Eigen::Matrix2d marginal(const Eigen::Matrix3d& c, const View& view) {
   Eigen::Matrix2d m;
   m << c(view.right, view.right), c(view.right, view.up), c(view.up, view.right), c(view.up, view.up);
@@ -94,23 +110,35 @@ Box extent(const ReportData& data, const View& view) {
   }
   for (const auto& p : data.truth.path) box.add(view(p));
   for (const auto& [epc, p] : data.truth.tags) box.add(view(p));
+  if (box.empty()) return box;
+
+  const Box near = box;
+  for (const TagEstimate& tag : data.tags) {
+    for (const TagHypothesis& hypothesis : tag.hypotheses) {
+      const Eigen::Vector2d p = view(hypothesis.p_W_X_m);
+      const Eigen::Vector2d beyond = (near.low - p).cwiseMax(p - near.high);
+      if (evaluate::is_located(tag) && beyond.maxCoeff() < kReach_m) box.add(p);
+    }
+  }
   return box;
 }
 
-void add_paths(const ReportData& data, const View& view, Script& script) {
-  script.add({path_data(data.truth.path, view),
-              fmt::format("with lines lw 2.5 lc rgb '{}' dt '-' title 'true path'", kTruth.gnuplot)});
+void add_paths(const ReportData& data, Sketch& sketch) {
+  const View& view = sketch.view;
+  sketch.add({path_data(data.truth.path, view),
+              fmt::format("with lines lw 2.5 lc rgb '{}' dt '-' notitle", kTruth.gnuplot)}, kTruth, "╌", "true path");
   std::string text, start;
   for (const auto& path : estimated_paths(data)) {
     if (path.empty()) continue;
     text += path_data(path, view) + "\n";
     start += point(view(path.front()));
   }
-  script.add({text, fmt::format("with lines lw 2 lc rgb '{}' title 'camera path'", kPath.gnuplot)});
-  script.add({start, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' title 'start'", kPath.gnuplot)});
+  sketch.add({text, fmt::format("with lines lw 2 lc rgb '{}' notitle", kPath.gnuplot)}, kPath, "━", "camera path");
+  sketch.add({start, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' notitle", kPath.gnuplot)}, kPath, "●", "start");
 }
 
-void add_hypotheses(const ReportData& data, const View& view, Script& script) {
+void add_hypotheses(const ReportData& data, Sketch& sketch) {
+  const View& view = sketch.view;
   std::string points, lines;
   for (const TagEstimate& tag : data.tags) {
     if (!evaluate::is_located(tag)) continue;
@@ -121,12 +149,12 @@ void add_hypotheses(const ReportData& data, const View& view, Script& script) {
       lines += point(view(tag.p_W_X_m)) + point(p) + "\n";
     }
   }
-  script.add({lines, fmt::format("with lines lw 0.8 lc rgb '{}' dt '.' notitle", kDoubt.gnuplot)});
-  script.add({points, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' title 'other position that fits'", kDoubt.gnuplot)});
+  sketch.add({lines, fmt::format("with lines lw 0.8 lc rgb '{}' dt '.' notitle", kDoubt.gnuplot)});
+  sketch.add({points, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' notitle", kDoubt.gnuplot)}, kDoubt, "○", "other position that fits");
 }
 
-void add_tags(const ReportData& data, const View& view, Trust trust, const PlotColour& colour, const char* title,
-              Script& script) {
+void add_tags(const ReportData& data, Trust trust, const PlotColour& colour, const char* title, Sketch& sketch) {
+  const View& view = sketch.view;
   std::string points, filled, outlines;
   for (const TagEstimate& tag : data.tags) {
     if (!evaluate::is_located(tag) || trust_of(tag.status) != trust) continue;
@@ -136,13 +164,14 @@ void add_tags(const ReportData& data, const View& view, Trust trust, const PlotC
     outlines += shape;
     points += point(view(tag.p_W_X_m));
   }
-  script.add({filled, fmt::format("with filledcurves closed fs transparent solid 0.18 noborder lc rgb '{}' notitle",
+  sketch.add({filled, fmt::format("with filledcurves closed fs transparent solid 0.18 noborder lc rgb '{}' notitle",
                                   colour.gnuplot)});
-  script.add({outlines, fmt::format("with lines lw 0.8 lc rgb '{}' notitle", colour.gnuplot)});
-  script.add({points, fmt::format("with points pt 7 ps 0.55 lc rgb '{}' title '{}'", colour.gnuplot, title)});
+  sketch.add({outlines, fmt::format("with lines lw 0.8 lc rgb '{}' notitle", colour.gnuplot)});
+  sketch.add({points, fmt::format("with points pt 7 ps 0.55 lc rgb '{}' notitle", colour.gnuplot)}, colour, "●", title);
 }
 
-void add_true_tags(const ReportData& data, const View& view, Script& script) {
+void add_true_tags(const ReportData& data, Sketch& sketch) {
+  const View& view = sketch.view;
   std::string points, lines;
   for (const auto& [epc, p] : data.truth.tags) {
     points += point(view(p));
@@ -150,11 +179,12 @@ void add_true_tags(const ReportData& data, const View& view, Script& script) {
     if (tag == data.last.tags.end() || !evaluate::is_located(tag->second)) continue;
     lines += point(view(p)) + point(view(tag->second.p_W_X_m)) + "\n";
   }
-  script.add({lines, fmt::format("with lines lw 1 lc rgb '{}' notitle", kTruth.gnuplot)});
-  script.add({points, fmt::format("with points pt 2 ps 0.7 lw 1.5 lc rgb '{}' title 'true tag'", kTruth.gnuplot)});
+  sketch.add({lines, fmt::format("with lines lw 1 lc rgb '{}' notitle", kTruth.gnuplot)});
+  sketch.add({points, fmt::format("with points pt 2 ps 0.7 lw 1.5 lc rgb '{}' notitle", kTruth.gnuplot)}, kTruth, "×", "true tag");
 }
 
-void add_labels(const ReportData& data, const View& view, Script& script) {
+void add_labels(const ReportData& data, Sketch& sketch) {
+  const View& view = sketch.view;
   std::string text;
   const auto located = std::count_if(data.tags.begin(), data.tags.end(), evaluate::is_located);
   if (static_cast<std::size_t>(located) > kMaxLabels) return;
@@ -163,37 +193,55 @@ void add_labels(const ReportData& data, const View& view, Script& script) {
     const Eigen::Vector2d p = view(data.tags[i].p_W_X_m);
     text += fmt::format("{:.4f} {:.4f} {}\n", p.x(), p.y(), i + 1);
   }
-  script.add({text, fmt::format("using 1:2:3 with labels left offset character 0.5,0.5 font ',10' tc rgb '{}' notitle",
+  sketch.add({text, fmt::format("using 1:2:3 with labels left offset character 0.5,0.5 font ',10' tc rgb '{}' notitle",
                                 kInk.gnuplot)});
 }
 
+std::string ranges(const Plot& plot, const View& view, const Box& box) {
+  const double w = plot.width, h = plot.height;
+  return fmt::format(
+      "set size ratio -1\nset key off\nset lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n"
+      "set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset xlabel '{} (m)'\nset ylabel '{} (m)'\n"
+      "set xrange [{:.4f}:{:.4f}]\nset yrange [{:.4f}:{:.4f}]\n",
+      kLeft_px / w, 1.0 - kRight_px / w, kBottom_px / h, 1.0 - kTop_px / h, "xyz"[view.right], "xyz"[view.up], box.low.x(),
+      box.high.x(), box.low.y(), box.high.y());
+}
+
+// The plot's height follows from equal axes; what is too flat gets more room above and below.
+int fit_height(Box& box) {
+  constexpr double kMinHeight = 260, kMaxHeight = 900;
+  const double px_per_m = (kWidth - kLeft_px - kRight_px) / (box.high - box.low).x();
+  const double frame = kTop_px + kBottom_px;
+  const double lacking_m = (kMinHeight - frame) / px_per_m - (box.high - box.low).y();
+  if (lacking_m > 0.0) {
+    box.low.y() -= 0.5 * lacking_m;
+    box.high.y() += 0.5 * lacking_m;
+  }
+  return static_cast<int>(std::lround(std::min(frame + px_per_m * (box.high - box.low).y(), kMaxHeight)));
+}
+
 std::optional<Plot> map(const ReportData& data, const View& view) {
-  constexpr int kWidth = 1000, kMinHeight = 300, kMaxHeight = 900;
-  constexpr double kFrameWidth_px = 100, kFrameHeight_px = 105;  // axes, legend
   Box box = extent(data, view);
   if (box.empty()) return std::nullopt;
   box.low.array() -= kMargin_m;
   box.high.array() += kMargin_m;
+  const int height = fit_height(box);
 
-  Plot plot{.name = view.name, .title = view.title, .width = kWidth, .height = kMaxHeight, .script = ""};
-  const Eigen::Vector2d size = box.high - box.low;
-  const double height = kFrameHeight_px + (kWidth - kFrameWidth_px) * size.y() / size.x();
-  plot.height = static_cast<int>(std::clamp(height, double{kMinHeight}, double{kMaxHeight}));
-
-  Script script;
-  add_paths(data, view, script);
-  add_hypotheses(data, view, script);
-  add_tags(data, view, Trust::kGood, kGood, "tag, 95 % ellipse", script);
-  add_tags(data, view, Trust::kDoubt, kDoubt, "ambiguous or weak", script);
-  add_tags(data, view, Trust::kStale, kStale, "moved or stale", script);
-  add_true_tags(data, view, script);
-  add_labels(data, view, script);
-  plot.script = axes_style();
-  plot.script += fmt::format(
-      "set size ratio -1\nset key at graph 0.5,1.0 center bottom horizontal offset 0,0.6\nset tmargin 3.5\n"
-      "set xlabel '{} (m)'\nset ylabel '{} (m)'\nset xrange [{:.4f}:{:.4f}]\nset yrange [{:.4f}:{:.4f}]\n",
-      "xyz"[view.right], "xyz"[view.up], box.low.x(), box.high.x(), box.low.y(), box.high.y());
-  plot.script += script.text();
+  Sketch sketch{.view = view, .script = {}, .legend = {}};
+  add_paths(data, sketch);
+  add_hypotheses(data, sketch);
+  add_tags(data, Trust::kGood, kGood, "tag, 95 % ellipse", sketch);
+  add_tags(data, Trust::kDoubt, kDoubt, "ambiguous or weak", sketch);
+  add_tags(data, Trust::kStale, kStale, "moved or stale", sketch);
+  add_true_tags(data, sketch);
+  add_labels(data, sketch);
+  Plot plot{.name = view.name,
+            .title = view.title,
+            .width = kWidth,
+            .height = height,
+            .script = axes_style(),
+            .legend = std::move(sketch.legend)};
+  plot.script += ranges(plot, view, box) + sketch.script.text();
   return plot;
 }
 

@@ -10,21 +10,22 @@ inline constexpr const char* kPageStyle = R"css(
 --line:#2f3844;--path:#8592a3;--good:#5aa5ff;--doubt:#f0a04b;--stale:#bf8cf0;--truth:#4cc27e;--bad:#ff7d7d}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--bg);color:var(--ink);font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-main{max-width:1120px;margin:0 auto;padding:28px 20px 48px}
+main{max-width:1240px;margin:0 auto;padding:28px 20px 48px}
 h1{font-size:1.5rem;margin:0;overflow-wrap:anywhere}
 h2{font-size:1.05rem;margin:0 0 8px}
 p{margin:4px 0;color:var(--soft)}
 section{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:18px 20px;margin-top:18px}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(165px,1fr));gap:12px;margin-top:18px}
+.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(215px,1fr));gap:12px;margin-top:18px}
 .card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:12px 16px}
 .card span{display:block;color:var(--soft);font-size:.82rem}
 .card b{display:block;font-size:1.4rem;font-weight:650;font-variant-numeric:tabular-nums}
 .card small{color:var(--soft)}
 svg.plot{display:block;width:100%;height:auto}
 svg.plot g,svg.plot text{font-family:inherit}
+.legend{margin:6px 0}.legend span{margin-right:16px;white-space:nowrap}.legend i{font-style:normal}
 .scroll{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:.86rem;font-variant-numeric:tabular-nums}
-th,td{padding:4px 9px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
+th,td{padding:4px 8px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{color:var(--soft);font-weight:600}
 .text{text-align:left}
 td.epc{font-family:ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;font-size:.8rem}

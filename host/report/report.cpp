@@ -17,12 +17,21 @@ struct Figure {
   std::optional<Plot> plot;
 };
 
+std::string legend_of(const Plot& plot) {
+  if (plot.legend.empty()) return "";
+  std::string text = "<p class=\"legend\">";
+  for (const LegendEntry& entry : plot.legend) {
+    text += fmt::format("<span><i style=\"color:{}\">{}</i> {}</span> ", entry.css, entry.symbol, escape(entry.text));
+  }
+  return text + "</p>\n";
+}
+
 Result<std::string> figure_section(const Figure& figure) {
   std::string text = fmt::format("<section><h2>{}</h2>\n", figure.heading);
   if (!figure.plot) return text + fmt::format("<p>{}</p></section>\n", figure.nothing);
   const auto svg = draw(*figure.plot);
   if (!svg) return svg.error();
-  return text + fmt::format("<p>{}</p>\n{}</section>\n", figure.caption, svg.value());
+  return text + fmt::format("<p>{}</p>\n{}{}</section>\n", figure.caption, legend_of(*figure.plot), svg.value());
 }
 
 std::string page(const std::string& title, const std::string& body) {

@@ -15,8 +15,11 @@ struct Layer {
 
 class Script {
  public:
-  void add(Layer layer) {
-    if (!layer.data.empty()) layers_.push_back(std::move(layer));
+  // True if there was something to draw.
+  bool add(Layer layer) {
+    const bool drawn = !layer.data.empty();
+    if (drawn) layers_.push_back(std::move(layer));
+    return drawn;
   }
   [[nodiscard]] std::string text() const;
 

@@ -24,11 +24,17 @@ std::string percent(const std::optional<double>& v, int digits = 0) {
   return v ? fmt::format("{:.{}f} %", *v * 100.0, digits) : "–";
 }
 
+// In steps long enough that the noise of single poses does not count as way.
 double path_length_m(const ReportData& data) {
+  constexpr double kStep_m = 0.1;
   double sum = 0.0;
   for (const auto& [segment, trajectory] : data.last.trajectories) {
-    for (std::size_t i = 1; i < trajectory.poses.size(); ++i) {
-      sum += (trajectory.poses[i].T_W_C.t - trajectory.poses[i - 1].T_W_C.t).norm();
+    Eigen::Vector3d from = trajectory.poses.front().T_W_C.t;
+    for (const MetricPose& pose : trajectory.poses) {
+      const double step = (pose.T_W_C.t - from).norm();
+      if (!(step >= kStep_m)) continue;
+      sum += step;
+      from = pose.T_W_C.t;
     }
   }
   return sum;
@@ -39,7 +45,7 @@ std::string scale_card(const ReportData& data) {
   const ScaleEstimate& scale = data.last.scales.rbegin()->second;
   if (!scale.observable) return card("Scale", "–", "not observable");
   return card("Scale", fmt::format("{:.4f}", scale.m_per_unit),
-              fmt::format("m per unit, ± {:.2f} % (1 sigma)", scale.log_sigma * 100.0));
+              fmt::format("m per unit, ± {:.2f} % (1 σ)", scale.log_sigma * 100.0));
 }
 
 const char* class_of(TagStatus status) {
@@ -152,7 +158,7 @@ std::string tag_table(const ReportData& data) {
       "position shown. Fits: positions that fit the reads.</p>\n<div class=\"scroll\"><table><thead><tr><th>#</th>"
       "<th class=\"text\">EPC</th><th class=\"text\">Status</th><th>x (m)</th><th>y (m)</th><th>z (m)</th><th>σx (cm)</th>"
       "<th>σy (cm)</th><th>σz (cm)</th><th>Fits</th><th>HDOP</th><th>Reads</th>";
-  if (data.evaluation) text += "<th>Error (cm)</th><th>To camera (cm)</th>";
+  if (data.evaluation) text += "<th>Error (cm)</th><th>To cam. (cm)</th>";
   text += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < data.tags.size(); ++i) text += tag_row(data, i);
   text += unseen_rows(data);
