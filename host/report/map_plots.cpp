@@ -19,7 +19,7 @@ constexpr double kFilledMax_m = 1.0;    // larger ellipses are outlines only
 
 constexpr double kReach_m = 6.0;        // other positions farther than this from everything else stay outside
 constexpr int kWidth = 1000;
-constexpr double kLeft_px = 70, kRight_px = 15, kTop_px = 12, kBottom_px = 52;
+constexpr double kLeft_px = 85, kRight_px = 15, kTop_px = 12, kBottom_px = 68;
 
 struct View {
   int right = 0, up = 1;  // coordinates of W

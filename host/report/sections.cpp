@@ -26,7 +26,7 @@ std::string percent(const std::optional<double>& v, int digits = 0) {
 
 // In steps long enough that the noise of single poses does not count as way.
 double path_length_m(const ReportData& data) {
-  constexpr double kStep_m = 0.1;
+  constexpr double kStep_m = 0.25;
   double sum = 0.0;
   for (const auto& [segment, trajectory] : data.last.trajectories) {
     Eigen::Vector3d from = trajectory.poses.front().T_W_C.t;
