@@ -75,6 +75,10 @@ struct JournalConfig {
   std::string directory = "";         // empty: no journal
 };
 
+struct DaemonConfig {
+  std::string calibration = "";       // TOML file: camera, mounting, antennas
+};
+
 struct Config {
   EstimatorConfig estimator;
   SyncConfig sync;
@@ -84,6 +88,7 @@ struct Config {
   LcmConfig lcm;
   CameraConfig camera;
   JournalConfig journal;
+  DaemonConfig daemon;
 };
 
 }  // namespace rfmvo
