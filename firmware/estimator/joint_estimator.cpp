@@ -75,7 +75,7 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const E
     const double cosine = std::clamp((p_W_X - p).normalized().dot(mean.normalized()), -1.0, 1.0);
     a.bearing_sweep_rad = std::max(a.bearing_sweep_rad, 2.0 * std::acos(cosine));
   }
-  a.hdop = hdop_value(horizontal_dilution_of_precision(antennas, p_W_X));
+  a.hdop = horizontal_dilution(antennas, p_W_X).value;
   return a;
 }
 
