@@ -12,8 +12,6 @@ namespace {
 
 // Reads farther back than this share no structured error (correlation below 0.02 at 5.7 lengths).
 constexpr double kMaxNeighbourLengths = 5.7;
-// Redescending loss (Geman-McClure with this scale): a read beyond it hardly pulls.
-constexpr double kRobustSigmas = 3.5;
 constexpr double kOutlierWeight = 0.2;  // below: not used to predict its followers
 
 using Raw = WhitenedTag::Raw;
@@ -69,13 +67,22 @@ void add_scaled(WhitenedRow& row, const Raw& raw, const JointRead& read, double 
   row.knot[k + 1] += factor * read.knot_fraction * raw.gradient_knot;
 }
 
-// Half the squared residual near zero, saturating at half of kRobustSigmas squared.
-struct Loss {
-  double cost, weight;
+// What one read may be: as modelled, flipped by pi, or (multipath at its worst, a stray reader) any
+// phase at all. -ln of the mixture, relative to the first component's peak; weight = probability of
+// being a measurement of this geometry at all.
+struct Judgement {
+  double innovation = 0.0;  // of the likelier of the two, rad
+  bool flipped = false;
+  double cost = 0.0, weight = 1.0;
 };
-Loss geman_mcclure(double residual) {
-  const double q = residual * residual / (kRobustSigmas * kRobustSigmas);
-  return {0.5 * residual * residual / (1.0 + q), 1.0 / ((1.0 + q) * (1.0 + q))};
+Judgement judge(double innovation, double sigma_rad, const JointProblem& problem) {
+  const double other = wrap_rad(innovation + kPi);
+  const double as_is = (1.0 - problem.flip_probability) * std::exp(-0.5 * std::pow(innovation / sigma_rad, 2));
+  const double flip = problem.flip_probability * std::exp(-0.5 * std::pow(other / sigma_rad, 2));
+  const double any = problem.outlier_probability * sigma_rad / std::sqrt(kTwoPi);  // uniform on the circle
+  const double sum = (1.0 - problem.outlier_probability) * (as_is + flip);
+  const bool flipped = flip > as_is;
+  return {flipped ? other : innovation, flipped, -std::log(sum + any), sum / (sum + any)};
 }
 
 }  // namespace
@@ -102,7 +109,6 @@ void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, co
   raws.clear();
   out.rows.resize(reads.size());
   out.cost = out.log_variance = out.inliers = 0.0;
-  const double flip_penalty = std::log((1.0 - problem.flip_probability) / problem.flip_probability);
   for (std::size_t i = 0; i < reads.size(); ++i) {
     raws.push_back(raw_row(reads[i], state, tag));
     Raw& raw = raws.back();
@@ -115,19 +121,15 @@ void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, co
     WhitenedRow& row = out.rows[i];
     row = WhitenedRow{};
     row.port = reads[i].port;
-    // Two-component mixture: as measured, or flipped by pi at the price of its rarity.
-    const double innovation = wrap_rad(raw.residual - predicted);
-    const double flipped = wrap_rad(innovation + kPi);
-    row.flipped = flipped * flipped + 2.0 * flip_penalty * c.variance_rad2 < innovation * innovation;
-    const double chosen = row.flipped ? flipped : innovation;
-    raw.residual = predicted + chosen;  // continuous along the chain, so that followers are predicted well
-
-    const double inverse_sigma = 1.0 / std::sqrt(c.variance_rad2);
-    row.residual = chosen * inverse_sigma;
-    const Loss loss = geman_mcclure(row.residual);
-    row.weight = loss.weight;
+    const double sigma_rad = std::sqrt(c.variance_rad2);
+    const Judgement judgement = judge(wrap_rad(raw.residual - predicted), sigma_rad, problem);
+    raw.residual = predicted + judgement.innovation;  // continuous along the chain: followers are predicted well
+    const double inverse_sigma = 1.0 / sigma_rad;
+    row.residual = judgement.innovation * inverse_sigma;
+    row.weight = judgement.weight;
+    row.flipped = judgement.flipped;
     raw.usable = row.weight > kOutlierWeight;
-    out.cost += loss.cost + (row.flipped ? flip_penalty : 0.0);
+    out.cost += judgement.cost;
     out.log_variance += std::log(c.variance_rad2);
     out.inliers += row.weight;
     if (!with_jacobian) continue;

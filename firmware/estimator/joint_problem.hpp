@@ -69,7 +69,8 @@ struct JointProblem {
   JointPriors priors;
   double reference_scale_m = 1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
   double correlation_length_m = 0.058;
-  double flip_probability = 0.003;
+  double flip_probability = 0.003;     // of a pi flip
+  double outlier_probability = 0.01;   // of a phase that tells nothing
 };
 
 [[nodiscard]] ReadStates states_at(const JointRead& read, const JointState& state, const TagState& tag);

@@ -77,6 +77,7 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   problem.reference_scale_m = reference_scale_m;
   problem.correlation_length_m = config_.joint.correlation_length_m;
   problem.flip_probability = config_.joint.flip_probability;
+  problem.outlier_probability = config_.joint.outlier_probability;
   JointPriors& priors = problem.priors;
   priors.time_offset_sigma_s = config_.joint.time_offset_sigma_s;
   priors.electrical_length_m = 0.0;
@@ -143,8 +144,10 @@ void JointSegment::estimate_electrical_lengths() {
 bool JointSegment::start() {
   const PathPose& last = path_.poses().back();
   const double duration_s = (last.time - start_time_).seconds();
-  if (path_.arc_V() <= next_start_arc_V_ || duration_s <= 0.0) return false;
-  next_start_arc_V_ = 1.4 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
+  std::size_t tags_to_start_from = 0;
+  for (const auto& [epc, tag] : tags_) tags_to_start_from += tag.reads >= kMinReads ? 1 : 0;
+  if (path_.arc_V() <= next_start_arc_V_ || duration_s <= 0.0 || tags_to_start_from == 0) return false;
+  next_start_arc_V_ = 1.5 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
   estimate_electrical_lengths();
 
   std::vector<Epc> all;
@@ -155,7 +158,7 @@ bool JointSegment::start() {
   options.log_scale_min = std::log(std::max(config_.joint.scale_min_m, config_.joint.speed_min_m_s / speed_V_s));
   options.log_scale_max = std::log(std::min(config_.joint.scale_max_m, config_.joint.speed_max_m_s / speed_V_s));
   options.range_max_m = config_.joint.tag_range_max_m;
-  knot_spacing_V_ = path_.arc_V();  // while the scale is open: one interval, drift is small yet
+  knot_spacing_V_ = 1.01 * path_.arc_V();  // while the scale is open: one interval, drift is small yet
   shared_.knots.assign(2, {});
   const std::vector<StartCandidate> found = find_starts(problem_for(all, 1.0), state_for(all), beams_, options);
   if (found.empty()) return false;
@@ -190,17 +193,38 @@ void JointSegment::place(bool thorough) {
     for (const auto& chain : tag.chains) reads += chain.size();
     if (reads < kMinReads) continue;
     const bool unique = tag.placed && !tag.modes.empty() && tag.modes[0].weight >= kUniqueWeight;
-    if (unique && !thorough) continue;
+    // Looked at again when a third more reads have come.
+    if (!thorough && (unique || 3 * reads < 4 * tag.reads_at_modes)) continue;
+    tag.reads_at_modes = reads;
     const JointProblem problem = problem_for({epc}, scale);
     const JointState state = state_for({epc});
-    const SpectrumOptions options{.cell_m = 0.06, .range_max_m = config_.joint.tag_range_max_m, .max_peaks = 12};
+    const SpectrumOptions options{.range_max_m = config_.joint.tag_range_max_m, .max_peaks = 16};
     constexpr std::size_t kReadsForModes = 64;
     tag.modes = find_modes(problem, 0, state, beams_, options, true, kReadsForModes);
     tag.placed = !tag.modes.empty();
     if (!tag.placed) continue;
+    weigh_with_path_uncertainty(problem, state, tag.modes);
     tag.state = tag.modes[0].tag;
     tag.covariance = tag.modes[0].covariance;
   }
+}
+
+// A mode may fit badly only because the path or a port's offset is not right yet. Each mode's cost is
+// lowered by what the shared states could still give way to it, to second order: with information S
+// and gradient g of the tag's reads, 1/2 g^T (P^-1 + S)^-1 g under their present covariance P.
+void JointSegment::weigh_with_path_uncertainty(const JointProblem& problem, JointState state, std::vector<TagMode>& modes) const {
+  const Eigen::MatrixXd& P = covariance_.shared;
+  if (modes.size() < 2 || P.rows() != SharedLayout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())}.size()) return;
+  for (TagMode& mode : modes) {
+    state.tags = {mode.tag};
+    const TagCoupling c = tag_coupling(problem, state);
+    const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(P.rows(), P.cols()) + c.information * P;
+    const Eigen::VectorXd give = P * A.partialPivLu().solve(c.gradient);
+    mode.cost -= 0.5 * c.gradient.dot(give);
+    const Eigen::MatrixXd gain = c.own_covariance * c.H_shared;
+    mode.covariance += gain * P * gain.transpose();
+  }
+  weigh_modes(modes);
 }
 
 void JointSegment::refine() {
@@ -255,11 +279,16 @@ void JointSegment::solve(bool thorough) {
   resize_knots();
   place(false);
   refine();
-  if (thorough) {
+  compute_covariance();
+  // The more tags join, the better the path and the port offsets, and the fewer modes remain.
+  constexpr int kMaxRounds = 3;
+  for (int round = 0; thorough && round < kMaxRounds; ++round) {
+    const std::vector<Epc> before = joined_tags();
     place(true);
     refine();
+    compute_covariance();
+    if (joined_tags() == before) break;
   }
-  compute_covariance();
   ++revision_;
   // An undecided scale is searched again as the path grows.
   if (!scale_observable() && !thorough) started_ = false;

@@ -29,6 +29,7 @@ struct SegmentTag {
 
   TagState state;
   std::vector<TagMode> modes;    // best first
+  std::size_t reads_at_modes = 0;  // when they were looked for
   bool placed = false;           // state holds a position
   bool joined = false;           // took part in the joint solution
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
@@ -71,6 +72,7 @@ class JointSegment {
   void resize_knots();
   bool start();
   void place(bool thorough);
+  void weigh_with_path_uncertainty(const JointProblem& problem, JointState state, std::vector<TagMode>& modes) const;
   void refine();
   void compute_covariance();
   [[nodiscard]] std::vector<Epc> joined_tags() const;

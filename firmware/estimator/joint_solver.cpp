@@ -75,7 +75,7 @@ void add_tag_prior(TagBlock& block) {
   block.H(3, 3) += 1.0 / (kTagOffsetPriorSigma_rad * kTagOffsetPriorSigma_rad);
 }
 
-NormalEquations build(const JointProblem& problem, const JointState& state, bool shared_fixed) {
+NormalEquations build(const JointProblem& problem, const JointState& state, bool shared_fixed, bool with_prior = true) {
   NormalEquations eq;
   eq.layout = {static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   const int size = shared_fixed ? 0 : eq.layout.size();
@@ -97,7 +97,7 @@ NormalEquations build(const JointProblem& problem, const JointState& state, bool
         eq.H(c, r) += eq.H(r, c);
         eq.H(r, c) = 0.0;
       }
-    eq.cost += add_path_prior(problem, state, eq.layout, &eq.H, &eq.g);
+    if (with_prior) eq.cost += add_path_prior(problem, state, eq.layout, &eq.H, &eq.g);
   }
   return eq;
 }
@@ -239,8 +239,15 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
 
 TagCoupling tag_coupling(const JointProblem& problem, const JointState& state) {
   RFMVO_ASSERT(problem.reads.size() == 1);
-  const NormalEquations eq = build(problem, state, false);
-  return {eq.tags[0].H.llt().solve(Eigen::Matrix4d::Identity()), eq.tags[0].H_shared};
+  const NormalEquations eq = build(problem, state, false, false);
+  const TagBlock& tag = eq.tags[0];
+  TagCoupling c;
+  c.own_covariance = tag.H.llt().solve(Eigen::Matrix4d::Identity());
+  c.H_shared = tag.H_shared;
+  c.information = eq.H.selfadjointView<Eigen::Lower>();
+  c.information.noalias() -= tag.H_shared.transpose() * c.own_covariance * tag.H_shared;
+  c.gradient = eq.g - tag.H_shared.transpose() * (c.own_covariance * tag.g);
+  return c;
 }
 
 }  // namespace rfmvo

@@ -44,11 +44,13 @@ struct JointCovariance {
 };
 [[nodiscard]] JointCovariance covariance(const JointProblem& problem, const JointState& state);
 
-// One tag against fixed shared states: its own covariance and how it leans on them. problem holds
-// that tag alone.
+// One tag (problem holds it alone) seen from the shared states: its own covariance with them fixed,
+// how it leans on them, and what its reads say of them once the tag itself is eliminated.
 struct TagCoupling {
   Eigen::Matrix4d own_covariance = Eigen::Matrix4d::Zero();
-  Eigen::MatrixXd H_shared;  // 4 x size(): d2 cost / d tag d shared
+  Eigen::MatrixXd H_shared;     // 4 x size(): d2 cost / d tag d shared
+  Eigen::MatrixXd information;  // size() x size(), lower triangle valid on both sides
+  Eigen::VectorXd gradient;     // -d cost / d shared
 };
 [[nodiscard]] TagCoupling tag_coupling(const JointProblem& problem, const JointState& state);
 

@@ -19,8 +19,9 @@ struct ScalePower {
   double power = 0.0;
 };
 
-SpectrumOptions spectrum_options(double cell_m, const StartOptions& o, int peaks) {
-  return {.cell_m = cell_m, .range_max_m = o.range_max_m, .max_peaks = peaks};
+SpectrumOptions spectrum_options(const std::vector<SpectrumRead>& reads, double finest_m, const StartOptions& o, int peaks) {
+  constexpr double kWidest_m = 0.3;
+  return {.cell_m = suitable_cell(reads, finest_m, kWidest_m), .range_max_m = o.range_max_m, .max_peaks = peaks};
 }
 
 // Tags with most reads first.
@@ -38,8 +39,8 @@ double power_of(const JointProblem& problem, const JointState& state, const std:
                 const BeamModel& beams, const StartOptions& o) {
   double power = 0.0;
   for (const std::size_t t : tags) {
-    const auto peaks = search_near_field(spectrum_reads(problem.reads[t], state, beams, false, o.max_reads),
-                                         spectrum_options(o.coarse_cell_m, o, 1));
+    const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[t], state, beams, false, o.max_reads);
+    const auto peaks = search_near_field(reads, spectrum_options(reads, o.coarse_cell_m, o, 1));
     if (!peaks.empty()) power += peaks[0].power;
   }
   return power;
@@ -104,11 +105,11 @@ void estimate_port_offsets(const JointProblem& problem, JointState& state) {
 void place_tags(const JointProblem& problem, const BeamModel& beams, const StartOptions& o, bool coherent, JointState& state) {
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     if (coherent) {
-      const auto modes = find_modes(problem, t, state, beams, spectrum_options(o.fine_cell_m, o, 6), true, o.max_reads);
+      const auto modes = find_modes(problem, t, state, beams, {.range_max_m = o.range_max_m, .max_peaks = 8}, true, o.max_reads);
       if (!modes.empty()) state.tags[t] = modes[0].tag;
     } else {
-      const auto peaks = search_near_field(spectrum_reads(problem.reads[t], state, beams, false, o.max_reads),
-                                           spectrum_options(o.fine_cell_m, o, 1));
+      const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[t], state, beams, false, o.max_reads);
+      const auto peaks = search_near_field(reads, spectrum_options(reads, o.fine_cell_m, o, 1));
       if (!peaks.empty()) state.tags[t].p_W_X = peaks[0].p_W_X;
     }
   }

@@ -16,7 +16,7 @@ struct StartOptions {
   double coarse_cell_m = 0.10, fine_cell_m = 0.06;
   double range_max_m = 4.0;
   std::size_t first_tags = 3, all_tags = 8;  // scales are sifted with the first, judged with all
-  std::size_t max_reads = 40;                // per tag
+  std::size_t max_reads = 32;                // per tag
   std::size_t candidates = 4;
 };
 

@@ -30,14 +30,14 @@ inline void sine_cosine_turns(float t, float& s, float& c) {
   c = far ? -k : k;
 }
 
-void fill(Block& block, const Eigen::Vector3f& corner, float cell) {
+void fill(Block& block, const Eigen::Vector3f& corner, const Eigen::Vector3f& cell) {
   std::size_t n = 0;
   for (int i = 0; i < kSide; ++i)
     for (int j = 0; j < kSide; ++j)
       for (int k = 0; k < kSide; ++k, ++n) {
-        block.x[n] = corner.x() + cell * (static_cast<float>(i) + 0.5F);
-        block.y[n] = corner.y() + cell * (static_cast<float>(j) + 0.5F);
-        block.z[n] = corner.z() + cell * (static_cast<float>(k) + 0.5F);
+        block.x[n] = corner.x() + cell.x() * (static_cast<float>(i) + 0.5F);
+        block.y[n] = corner.y() + cell.y() * (static_cast<float>(j) + 0.5F);
+        block.z[n] = corner.z() + cell.z() * (static_cast<float>(k) + 0.5F);
       }
 }
 
@@ -87,7 +87,7 @@ SpectrumPeak strongest(const Block& block, std::span<const SpectrumRead> reads,
 // Is the block's centre where the antennas could have read it from?
 bool in_beam(const Eigen::Vector3f& centre, std::span<const SpectrumRead> reads, const SpectrumOptions& o) {
   const std::size_t stride = std::max<std::size_t>(1, reads.size() / 16);
-  const float slack = static_cast<float>(o.cell_m) * kSide * 0.87F;  // half the block's diagonal
+  const float slack = 0.5F * kSide * static_cast<float>(o.cell_m.norm());  // half the block's diagonal
   const float cosine = std::cos(static_cast<float>(o.beam_half_angle_rad));
   int seen = 0, asked = 0;
   for (std::size_t i = 0; i < reads.size(); i += stride, ++asked) {
@@ -103,43 +103,86 @@ std::vector<SpectrumPeak> separated(std::vector<SpectrumPeak> peaks, const Spect
   std::stable_sort(peaks.begin(), peaks.end(),
                    [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
   std::vector<SpectrumPeak> kept;
-  const double apart_m = 1.5 * options.cell_m;
+  constexpr double kCellsApart = 1.5;
   for (const SpectrumPeak& p : peaks) {
     if (static_cast<int>(kept.size()) >= options.max_peaks) break;
     const bool near_a_stronger_one = std::any_of(kept.begin(), kept.end(), [&](const SpectrumPeak& k) {
-      return (k.p_W_X - p.p_W_X).norm() < apart_m;
+      return (k.p_W_X - p.p_W_X).cwiseQuotient(options.cell_m).norm() < kCellsApart;
     });
     if (!near_a_stronger_one) kept.push_back(p);
   }
   return kept;
 }
 
-}  // namespace
+std::vector<SpectrumRead> thinned(std::span<const SpectrumRead> reads, std::size_t count) {
+  std::vector<SpectrumRead> some;
+  count = std::min(count, reads.size());
+  for (std::size_t i = 0; i < count; ++i) some.push_back(reads[i * reads.size() / count]);
+  return some;
+}
 
-std::vector<SpectrumPeak> search_near_field(std::span<const SpectrumRead> reads, const SpectrumOptions& options) {
-  if (reads.empty()) return {};
-  Eigen::Vector3f low = reads[0].p_W_A, high = reads[0].p_W_A;
+struct Bounds {
+  Eigen::Vector3f low, high;
+};
+Bounds bounds_of(std::span<const SpectrumRead> reads) {
+  Bounds b{reads[0].p_W_A, reads[0].p_W_A};
   for (const SpectrumRead& r : reads) {
-    low = low.cwiseMin(r.p_W_A);
-    high = high.cwiseMax(r.p_W_A);
+    b.low = b.low.cwiseMin(r.p_W_A);
+    b.high = b.high.cwiseMax(r.p_W_A);
   }
-  // A tag is within range of nearly every read, so of the middle of them.
-  const auto range = static_cast<float>(options.range_max_m);
-  const auto cell = static_cast<float>(options.cell_m);
-  const float block_m = cell * kSide;
-  const Eigen::Vector3f first = high - Eigen::Vector3f::Constant(range).cwiseMax(high - low);
-  const Eigen::Vector3f last = low + Eigen::Vector3f::Constant(range).cwiseMax(high - low);
+  return b;
+}
+
+// The strongest cell of every block in the beam.
+std::vector<SpectrumPeak> sift(std::span<const SpectrumRead> reads, const SpectrumOptions& options) {
+  // A tag is within range of nearly every read, so of the outermost.
+  const Bounds b = bounds_of(reads);
+  const Eigen::Vector3f reach =
+      Eigen::Vector3f::Constant(static_cast<float>(options.range_max_m)).cwiseMax(b.high - b.low);
+  const Eigen::Vector3f first = b.high - reach, last = b.low + reach;
+  const Eigen::Vector3f cell = options.cell_m.cast<float>();
+  const Eigen::Vector3f step = kSide * cell;
   const std::array<float, kMaxGroups> inverse_count = inverse_counts(reads);
   std::vector<SpectrumPeak> peaks;
   Block block;
-  for (float x = first.x(); x < last.x(); x += block_m)
-    for (float y = first.y(); y < last.y(); y += block_m)
-      for (float z = first.z(); z < last.z(); z += block_m) {
+  for (float x = first.x(); x < last.x(); x += step.x())
+    for (float y = first.y(); y < last.y(); y += step.y())
+      for (float z = first.z(); z < last.z(); z += step.z()) {
         const Eigen::Vector3f corner(x, y, z);
-        if (!in_beam(corner + Eigen::Vector3f::Constant(0.5F * block_m), reads, options)) continue;
+        if (!in_beam(corner + 0.5F * step, reads, options)) continue;
         fill(block, corner, cell);
         peaks.push_back(strongest(block, reads, inverse_count));
       }
+  return peaks;
+}
+
+}  // namespace
+
+Eigen::Vector3d suitable_cell(std::span<const SpectrumRead> reads, double finest_m, double widest_m) {
+  constexpr double kUsualRange_m = 1.5, kMaxSpread = 1.4, kCurvature = 0.2;
+  const Bounds b = bounds_of(reads);
+  Eigen::Vector3d cell;
+  for (int i = 0; i < 3; ++i) {
+    // Spread of the direction cosine along this axis over the aperture.
+    const double spread = std::min(kMaxSpread, static_cast<double>(b.high[i] - b.low[i]) / kUsualRange_m) + kCurvature;
+    const double wavenumber = kTwoPi * static_cast<double>(reads[0].turns_per_m);
+    cell[i] = std::clamp(4.0 / (wavenumber * spread), finest_m, widest_m);  // half a cell times half the spread: 1 rad
+  }
+  return cell;
+}
+
+std::vector<SpectrumPeak> search_near_field(std::span<const SpectrumRead> reads, const SpectrumOptions& options) {
+  if (reads.empty()) return {};
+  const std::vector<SpectrumRead> some = thinned(reads, options.sifting_reads);
+  std::vector<SpectrumPeak> peaks = sift(some, options);
+  if (some.size() < reads.size()) {
+    constexpr std::size_t kJudgedPerPeak = 12;
+    const std::size_t judged = std::min(peaks.size(), kJudgedPerPeak * static_cast<std::size_t>(options.max_peaks));
+    std::partial_sort(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(judged), peaks.end(),
+                      [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
+    peaks.resize(judged);
+    for (SpectrumPeak& p : peaks) p.power = near_field_power(reads, p.p_W_X);
+  }
   return separated(std::move(peaks), options);
 }
 

@@ -18,7 +18,8 @@ struct SpectrumRead {
 };
 
 struct SpectrumOptions {
-  double cell_m = 0.07;           // spacing of the grid
+  Eigen::Vector3d cell_m = Eigen::Vector3d::Constant(0.07);  // spacing of the grid along the axes of W
+  std::size_t sifting_reads = 24;  // the whole grid is sifted with so many reads, its best cells judged with all
   double range_min_m = 0.25, range_max_m = 5.0;  // from the antenna
   double beam_half_angle_rad = 1.40;             // reads come from the front of an antenna,
   double beam_min_share = 0.9;                   // nearly all of them
@@ -31,6 +32,10 @@ struct SpectrumPeak {
   // here" against noise, up to the noise's concentration. At most the number of reads.
   double power = 0.0;
 };
+
+// The spacing that loses at most a radian at the ends of the aperture, per axis: fine along the
+// aperture, coarse in range. Between finest_m and widest_m.
+[[nodiscard]] Eigen::Vector3d suitable_cell(std::span<const SpectrumRead> reads, double finest_m, double widest_m);
 
 // Peaks of the spectrum, strongest first, at least 1.5 cells apart. Empty if no cell is in the beam.
 [[nodiscard]] std::vector<SpectrumPeak> search_near_field(std::span<const SpectrumRead> reads,

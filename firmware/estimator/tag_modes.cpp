@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/units.hpp"
 #include "estimator/chain_whitening.hpp"
@@ -37,18 +38,19 @@ Eigen::Matrix4d conditional_covariance(const JointProblem& one, const JointState
   return H.inverse();
 }
 
-void weigh(std::vector<TagMode>& modes) {
-  double sum = 0.0;
+}  // namespace
+
+void weigh_modes(std::vector<TagMode>& modes) {
+  double sum = 0.0, best = std::numeric_limits<double>::infinity();
+  for (const TagMode& m : modes) best = std::min(best, m.cost);
   for (TagMode& m : modes) {
     // Laplace: the volume that the mode holds, times its height.
-    m.weight = std::exp(modes[0].cost - m.cost) * std::sqrt(std::max(m.covariance.topLeftCorner<3, 3>().determinant(), 0.0));
+    m.weight = std::exp(best - m.cost) * std::sqrt(std::max(m.covariance.topLeftCorner<3, 3>().determinant(), 0.0));
     sum += m.weight;
   }
   for (TagMode& m : modes) m.weight = sum > 0.0 ? m.weight / sum : 0.0;
   std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.weight > b.weight; });
 }
-
-}  // namespace
 
 std::vector<SpectrumRead> spectrum_reads(const std::vector<JointRead>& reads, const JointState& state,
                                          const BeamModel& beams, bool coherent, std::size_t max_reads) {
@@ -71,13 +73,15 @@ std::vector<SpectrumRead> spectrum_reads(const std::vector<JointRead>& reads, co
 }
 
 std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
-                                const BeamModel& beams, const SpectrumOptions& options, bool coherent,
+                                const BeamModel& beams, SpectrumOptions options, bool coherent,
                                 std::size_t max_reads) {
   JointProblem one = problem;
   one.reads = {problem.reads[index]};
   JointState local = state;
-  const std::vector<SpectrumPeak> peaks =
-      search_near_field(spectrum_reads(one.reads[0], state, beams, coherent, max_reads), options);
+  const std::vector<SpectrumRead> reads = spectrum_reads(one.reads[0], state, beams, coherent, max_reads);
+  constexpr double kFinest_m = 0.06, kWidest_m = 0.2;
+  options.cell_m = suitable_cell(reads, kFinest_m, kWidest_m);
+  const std::vector<SpectrumPeak> peaks = search_near_field(reads, options);
   std::vector<TagMode> modes;
   for (const SpectrumPeak& peak : peaks) {
     TagState tag = state.tags[index];
@@ -93,7 +97,7 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
   }
   std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.cost < b.cost; });
   while (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove) modes.pop_back();
-  weigh(modes);
+  weigh_modes(modes);
   return modes;
 }
 

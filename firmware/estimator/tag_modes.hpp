@@ -26,9 +26,13 @@ struct BeamModel {
 [[nodiscard]] std::vector<SpectrumRead> spectrum_reads(const std::vector<JointRead>& reads, const JointState& state,
                                                        const BeamModel& beams, bool coherent, std::size_t max_reads);
 
-// Modes of tag `index`, best first; shared states fixed. Empty if no position is in the beam.
+// Posterior probabilities from cost and covariance; the heaviest first.
+void weigh_modes(std::vector<TagMode>& modes);
+
+// Modes of tag `index`, best first; shared states fixed. Empty if no position is in the
+// beam. The grid's spacing is chosen here.
 [[nodiscard]] std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
-                                              const BeamModel& beams, const SpectrumOptions& options, bool coherent,
+                                              const BeamModel& beams, SpectrumOptions options, bool coherent,
                                               std::size_t max_reads);
 
 }  // namespace rfmvo
