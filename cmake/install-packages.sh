@@ -8,10 +8,11 @@ cd "$(dirname "$0")/.."
 venv=build/venv
 requirements=cmake/requirements.txt
 
+mapfile -t wanted < <(grep -v '^#' cmake/packages.txt; [ $# -eq 0 ] || printf '%s\n' "$@")
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null || true)
 missing=()
-for package in $(grep -v '^#' cmake/packages.txt) "$@"; do
-  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing+=("$package")
+for package in "${wanted[@]}"; do
+  [[ $'\n'$installed$'\n' == *$'\n'"installed $package"$'\n'* ]] || missing+=("$package")
 done
 
 if [ ${#missing[@]} -gt 0 ]; then
