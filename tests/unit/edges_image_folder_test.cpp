@@ -52,21 +52,21 @@ TEST(ImageFolder, ErrorsNameTheFile) {
   const TemporaryFolder folder;
   write_folder(folder);
   write_file(folder / "times.txt", "0 images/a.png\n0.1 images/missing.png\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/images/missing.png: cannot be read: No such file or directory");
+  EXPECT_EQ(read_all(folder / ""), folder / "images/missing.png: cannot be read: No such file or directory");
   write_file(folder / "times.txt", "0 images/a.png\n0 images/b.png\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/times.txt:2: times do not increase");
+  EXPECT_EQ(read_all(folder / ""), folder / "times.txt:2: times do not increase");
   write_file(folder / "times.txt", "0\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/times.txt:1: expects: time in seconds, file name");
+  EXPECT_EQ(read_all(folder / ""), folder / "times.txt:1: expects: time in seconds, file name");
   write_file(folder / "times.txt", "0 images/a.bmp\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/times.txt:1: \"images/a.bmp\" is neither .png nor .jpg");
+  EXPECT_EQ(read_all(folder / ""), folder / "times.txt:1: \"images/a.bmp\" is neither .png nor .jpg");
   write_folder(folder);
   write_file(folder / "calib.txt", "10 10 4 3 9 6 none\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/images/a.png: the png image has 8 x 6 px, declared are 9 x 6");
+  EXPECT_EQ(read_all(folder / ""), folder / "images/a.png: the png image has 8 x 6 px, declared are 9 x 6");
   write_file(folder / "calib.txt", "10 10 4 3 8 6 fisheye 0 0 0 0\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/calib.txt:1: unknown camera model \"fisheye\"; known: radtan, none");
+  EXPECT_EQ(read_all(folder / ""), folder / "calib.txt:1: unknown camera model \"fisheye\"; known: radtan, none");
   write_file(folder / "images/a.png", "this is no image");
   write_file(folder / "calib.txt", "10 10 4 3 8 6 none\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "/images/a.png: the png image cannot be decoded");
+  EXPECT_EQ(read_all(folder / ""), folder / "images/a.png: the png image cannot be decoded");
 }
 
 }  // namespace
