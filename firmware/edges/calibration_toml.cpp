@@ -4,6 +4,7 @@
 
 #include "config/config_table.hpp"
 #include "edges/toml_files.hpp"
+#include "edges/text_file.hpp"
 #include "edges/toml_parts.hpp"
 
 namespace rfmvo {
@@ -225,7 +226,7 @@ Result<Calibration> parse_calibration(std::string_view toml, const std::string& 
 }
 
 Result<Calibration> read_calibration(const std::string& path) {
-  auto text = read_text(path);
+  auto text = read_text_file(path);
   if (!text) return text.error();
   return parse_calibration(text.value(), path);
 }

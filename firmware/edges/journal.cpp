@@ -1,5 +1,7 @@
 #include "edges/journal.hpp"
 
+#include <algorithm>
+
 #include "edges/lcm_codec.hpp"
 #include "edges/log_file.hpp"
 
@@ -75,6 +77,48 @@ Result<std::optional<Event>> JournalReader::next() {
       if (const Status s = decode_image(*frame); !s) return in_record(file, record, s.error());
     return result;
   }
+}
+
+Result<JournalSummary> summarise_journal(const std::string& path, const std::string& prefix) {
+  auto file = LogFileReader::open(path);
+  if (!file) return file.error();
+  JournalSummary summary;
+  bool started = false;
+  while (true) {
+    auto read = file.value()->next(!started);
+    if (!read) return read.error();
+    if (!read.value()) break;
+    const LogRecord& record = *read.value();
+    if (!is_event_channel(record.channel, prefix)) continue;
+    const std::string_view name = std::string_view(record.channel).substr(prefix.size());
+    if (name == "START" && !started) {
+      auto event = decode_event(record.channel, record.data, prefix);
+      if (!event) return in_record(*file.value(), record, event.error());
+      summary.start = std::get<Start>(std::move(event).value());
+      started = true;
+    }
+    const DeviceTime time = DeviceTime::from_us(record.utime);
+    summary.first = summary.events == 0 ? time : std::min(summary.first, time);
+    summary.last = summary.events == 0 ? time : std::max(summary.last, time);
+    ++summary.events;
+    summary.frames += name == "FRAME" ? 1 : 0;
+    summary.camera_poses += name == "CAMERA_POSE" ? 1 : 0;
+    summary.tag_reads += name == "TAG_READ" ? 1 : 0;
+  }
+  if (!started)
+    return Error{ErrorCode::kMalformed, "not a journal: it holds no " + prefix + "START event", path};
+  return summary;
+}
+
+Status check_pose_source(const JournalSummary& journal, const Config& config, const std::string& path) {
+  const bool frames = config.estimator.pose_source == "frames";
+  if ((frames ? journal.frames : journal.camera_poses) > 0) return Done{};
+  const std::uint64_t others = frames ? journal.camera_poses : journal.frames;
+  if (others == 0) return Error{ErrorCode::kMalformed, "holds neither frames nor camera poses", path};
+  return Error{ErrorCode::kMalformed,
+               frames ? "holds no frames, but camera poses: estimator.pose_source = \"poses\" would do"
+                      : "holds no camera poses, but frames: estimator.pose_source = \"frames\" would do",
+               path};
 }
 
 Result<std::vector<Estimate>> read_estimates(const std::string& path, const std::string& prefix) {

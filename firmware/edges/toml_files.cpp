@@ -1,6 +1,7 @@
 #include "edges/toml_files.hpp"
 
 #include "config/config_table.hpp"
+#include "edges/text_file.hpp"
 #include "edges/toml_parts.hpp"
 
 namespace rfmvo {
@@ -51,7 +52,7 @@ Result<Config> parse_config(std::string_view toml, const std::string& where, con
 }
 
 Result<Config> read_config(const std::string& path, const Config& base) {
-  auto text = read_text(path);
+  auto text = read_text_file(path);
   if (!text) return text.error();
   return parse_config(text.value(), path, base);
 }

@@ -1,20 +1,11 @@
 #include "edges/toml_parts.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <memory>
 
 namespace rfmvo::toml_parts {
-namespace {
-
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
-
-}  // namespace
-
 Result<toml::table> parse_document(std::string_view toml, const std::string& where) {
   try {
     return toml::parse(toml);
@@ -22,21 +13,6 @@ Result<toml::table> parse_document(std::string_view toml, const std::string& whe
     const auto line = std::to_string(error.source().begin.line);
     return Error{ErrorCode::kMalformed, "not valid TOML: " + std::string(error.description()), where + ":" + line};
   }
-}
-
-Result<std::string> read_text(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), &std::fclose);
-  if (file == nullptr) {
-    const bool missing = errno == ENOENT || errno == ENOTDIR;
-    return Error{missing ? ErrorCode::kNotFound : ErrorCode::kUnreadable,
-                 missing ? "no such file" : std::string("cannot be read: ") + std::strerror(errno), path};
-  }
-  std::string text(kMaxFileBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0)
-    return Error{ErrorCode::kUnreadable, std::string("cannot be read: ") + std::strerror(errno), path};
-  if (text.size() > kMaxFileBytes) return Error{ErrorCode::kMalformed, "larger than 1 MB", path};
-  return text;
 }
 
 std::string place(const std::string& where, const toml::node& node) {

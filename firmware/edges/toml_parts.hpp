@@ -13,8 +13,6 @@ namespace rfmvo::toml_parts {
 
 // Errors: kMalformed with FILE:LINE.
 [[nodiscard]] Result<toml::table> parse_document(std::string_view toml, const std::string& where);
-// Errors: kNotFound, kUnreadable; more than 1 MB is kMalformed.
-[[nodiscard]] Result<std::string> read_text(const std::string& path);
 
 // "FILE:LINE" of a node.
 [[nodiscard]] std::string place(const std::string& where, const toml::node& node);

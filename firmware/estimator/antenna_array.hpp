@@ -5,15 +5,18 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "base/time.hpp"
-#include "geometry/rigid.hpp"
+#include <deque>
+
+#include "config/calibration.hpp"
+#include "estimator/phase_calibration.hpp"
+#include "estimator/sampling_synchronization.hpp"
 
 namespace rfmvo {
 
 // Directions are searched in the frame D of the antenna: z along the boresight, because
 // alpha, beta in [0, 180 deg] cover exactly the hemisphere z >= 0 (docs/paper.md).
 struct AntennaArray {
-  Eigen::Matrix3Xd camera_V;        // 3 x L: X_C[k,i] - X_C[k,1], units of V
+  Eigen::Matrix3Xd camera_V;        // 3 x L: X_C[k,i] minus the array's origin X_C[k,1], units of V
   Eigen::Matrix3Xd lever_V_m;       // 3 x L: antenna minus camera, axes of V, metres: Eq. (12)
   Eigen::VectorXd phase_step_rad;   // L-1: phi[k,i+1] - phi[k,i], in [-2 pi, 2 pi]: Eq. (2)
   Eigen::VectorXd duration_s;       // L-1: time between the two reads
@@ -32,5 +35,19 @@ struct AntennaArray {
   // Length of X_C[k,i+1] - X_C[k,i], units of V.
   [[nodiscard]] double camera_step(Eigen::Index i) const { return (camera_V.col(i + 1) - camera_V.col(i)).norm(); }
 };
+
+struct ArrayOptions {
+  // Lever arms turn with the camera. Differs from Eq. (11), (12): the paper's constant offset assumes that
+  // the cart never turns; 10 deg of yaw on 0.4 m is 2.7 rad of phase.
+  bool fix_rotation = false;
+  // The frame D turns with the camera as well. Only together with averages on the sphere: the numbers
+  // alpha, beta of two arrays can be averaged in one common frame only.
+  bool turning_frame = false;
+};
+
+// Reads [first, first + count) of one tag on one antenna; p_V_origin: camera position that camera_V counts from.
+[[nodiscard]] AntennaArray make_array(const std::deque<SampledRead>& reads, std::size_t first, std::size_t count,
+                                      const Eigen::Vector3d& p_V_origin, const AntennaCalibration& antenna,
+                                      const PhaseCalibration& phases, const ArrayOptions& options);
 
 }  // namespace rfmvo

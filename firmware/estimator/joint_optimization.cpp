@@ -16,7 +16,8 @@ constexpr double kConverged_m = 1e-4;        // move of X_T between two outer it
 constexpr double kConvergedScale = 1e-4;     // relative move of gamma
 constexpr int kMaxSteps = 50;                // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
-constexpr double kMaxRange_m = 100.0;        // no UHF tag answers from farther
+constexpr double kMaxRange_m = 20.0;         // no passive UHF tag answers from farther
+constexpr double kRunaway_m = 1e4;           // X_T goes to infinity where the data say "plane wave"
 constexpr double kMinDistance_m = 1e-3;      // keeps the bearing of a tag on an antenna defined
 constexpr double kUnknownSigma_m = 10.0;     // 1 sigma of a direction the data say nothing about
 constexpr double kUnknownLogScale = 1.0;     // same for the scale, relative
@@ -74,7 +75,7 @@ Eigen::VectorXd measured_steps(std::span<const AntennaTerm> antennas, const Stat
 
 bool sane(const State& state) {
   return std::isfinite(state.gamma) && state.gamma > 0.0 && state.p_X_m.allFinite() &&
-         state.p_X_m.norm() < kMaxRange_m;
+         state.p_X_m.norm() < kRunaway_m;
 }
 
 // Eq. (18) by Levenberg-Marquardt with Marquardt's scaling. The norm of a scalar in Eq. (18) is read
@@ -186,7 +187,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
   solution.covariance = covariance_of(residuals, solution.sigma_m, state.gamma);
   solution.p_X_m = state.p_X_m;
   solution.gamma = state.gamma;
-  solution.found = sane(state);
+  solution.found = sane(state) && solution.converged && state.p_X_m.norm() < kMaxRange_m;
   return solution;
 }
 

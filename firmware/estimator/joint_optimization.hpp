@@ -29,8 +29,8 @@ struct AntennaTerm {
 };
 
 struct ArraySolution {
-  bool found = false;      // false: parallel lines, or the position ran away
-  bool converged = false;  // before max_iterations
+  bool found = false;      // false: parallel lines, no convergence, or a position out of any reader's range
+  bool converged = false;  // within max_iterations: the paper repeats "until it converges"
   int iterations = 0;
   Eigen::Vector3d p_X_m = Eigen::Vector3d::Zero();  // X_T: axes of V, origin the camera at the first read, metres
   double gamma = 0.0;                               // metres per unit of V

@@ -121,18 +121,29 @@ void narrow_by_steps(const AntennaArray& array, double max_step_m, ScaleRange& r
   }
 }
 
-// Differs from Eq. (4), (5): limits on the sums over the array, because one missed read (long step) or
-// one noisy read (short step) pushes the limit of a single step past the truth. The speed limit holds
-// for the mean speed; an unwrapped |Delta d| is never too long by more than the allowance.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Differs from Eq. (4), (5): limits on sums and medians over the array, because one missed read (long
+// step) or one noisy read (short step) pushes the limit of a single step past the truth. The speed limit
+// holds for the mean speed, the median step is at most lambda/2 as Eq. (20) demands, and an unwrapped
+// |Delta d| is never too long by more than the allowance.
 void narrow_by_path(const AntennaArray& array, double max_speed_m_s, ScaleRange& range) {
   double path = 0.0, usable_path = 0.0, radial_m = 0.0;
+  std::vector<double> camera_steps;
   for (Eigen::Index i = 0; i < array.steps(); ++i) {
-    path += array.camera_step(i);
+    camera_steps.push_back(array.camera_step(i));
+    path += camera_steps.back();
     if (!array.usable(i)) continue;
     const double phase = array.phase_step_rad(i) + cycle_step_rad(array.phase_step_rad(i));
-    usable_path += array.camera_step(i);
+    usable_path += camera_steps.back();
     radial_m += array.wavelength_m / (2.0 * kTwoPi) * std::max(0.0, std::abs(phase) - kPhaseStepAllowance_rad);
   }
+  const double middle_step = median(std::move(camera_steps));
+  if (middle_step > kMinCameraStep) range.max = std::min(range.max, 0.5 * array.wavelength_m / middle_step);
   if (path > kMinCameraStep) range.max = std::min(range.max, max_speed_m_s * array.duration_s.sum() / path);
   if (usable_path > kMinCameraStep) range.min = std::max(range.min, radial_m / usable_path);
 }

@@ -48,6 +48,9 @@ struct Scene {
 [[nodiscard]] Scene make_aisle_scene(const Options& options);
 [[nodiscard]] Result<Scene> make_image_scene(const Options& options);
 
+// Lets the scene's frames be rendered from its environment. Call it when everything else is set.
+void attach_rendered_frames(Scene& scene, std::uint64_t seed);
+
 // EPC of the n-th simulated tag: a 96-bit SGTIN-like code that ends in n.
 [[nodiscard]] Epc epc_of(std::size_t n);
 
