@@ -60,8 +60,8 @@ TEST(Escape, ReplacesControlCharactersAndBrokenUtf8) {
   const std::string broken = "\xEF\xBF\xBD";
   EXPECT_EQ(escape(std::string("a\x01z")), "a" + broken + "z");
   EXPECT_EQ(escape(std::string("a\0z", 3)), "a" + broken + "z");
-  EXPECT_EQ(escape("\xC0\xAF"), broken + broken);         // overlong "/"
-  EXPECT_EQ(escape("\xE2\x82"), broken + broken);         // cut off
+  EXPECT_EQ(escape("\xC0\xAF"), broken + broken);               // overlong "/"
+  EXPECT_EQ(escape("\xE2\x82"), broken + broken);               // cut off
   EXPECT_EQ(escape("\xED\xA0\x80"), broken + broken + broken);  // a surrogate
 }
 
