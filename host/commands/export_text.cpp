@@ -38,14 +38,15 @@ std::string to_tum(const evaluate::LastEstimates& last) {
 }
 
 std::string to_tags_csv(const evaluate::LastEstimates& last) {
-  std::string text = "epc,status,x_m,y_m,z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,hdop,reads,segment\n";
+  std::string text =
+      "epc,status,x_m,y_m,z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,hdop,reads,segment\n";
   for (const auto& [epc, tag] : last.tags) {
     fmt::format_to(std::back_inserter(text), "{},{},", epc.hex(), evaluate::label_of(tag.status));
     if (evaluate::is_located(tag)) {
       const Eigen::Vector3d& p = tag.p_W_X_m;
       const Eigen::Matrix3d& c = tag.covariance_m2;
-      fmt::format_to(std::back_inserter(text), "{:.6f},{:.6f},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g}", p.x(),
-                     p.y(), p.z(), c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2), tag.hdop);
+      fmt::format_to(std::back_inserter(text), "{:.6f},{:.6f},{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g}",
+                     p.x(), p.y(), p.z(), c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2), tag.hdop);
     } else {
       text += ",,,,,,,,,";
     }

@@ -42,7 +42,8 @@ std::optional<Similarity> align(const std::vector<PosePair>& pairs, const Alignm
     const Eigen::Vector3d e = pair.estimated.t - means.estimated;
     covariance += (pair.truth.t - means.truth) * e.transpose() / n;
     variance += e.squaredNorm() / n;
-    covariance += (options.orientation_weight_m2 / n) * (pair.truth.R * pair.estimated.R.conjugate()).toRotationMatrix();
+    covariance +=
+        (options.orientation_weight_m2 / n) * (pair.truth.R * pair.estimated.R.conjugate()).toRotationMatrix();
   }
   if (!(variance > 0.0) || !covariance.allFinite()) return std::nullopt;
 

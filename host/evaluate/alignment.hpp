@@ -42,8 +42,8 @@ struct AlignmentOptions {
 
 // Truth at `time` by interpolation; nothing outside the truth (but for kTimeSlack) or inside a gap of
 // it longer than kMaxTruthGap.
-inline constexpr Duration kTimeSlack{1'000'000};        // 1 ms: results carry whole microseconds
-inline constexpr Duration kMaxTruthGap{500'000'000};    // 0.5 s: a cart turns 10 degrees within it
+inline constexpr Duration kTimeSlack{1'000'000};      // 1 ms: results carry whole microseconds
+inline constexpr Duration kMaxTruthGap{500'000'000};  // 0.5 s: a cart turns 10 degrees within it
 [[nodiscard]] std::optional<Rigid3> truth_at(const std::vector<simulate::TruePose>& trajectory, DeviceTime time);
 
 }  // namespace rfmvo::evaluate

@@ -53,14 +53,14 @@ struct TagsEvaluation {
   std::optional<Summary> error_m, camera_relative_m;
   // Share of the located tags inside the 95 % ellipsoid of their covariance. A covariance that is not
   // positive definite claims certainty: it counts as outside.
-  std::optional<double> coverage95;        // p_C_X, covariance_C
-  std::optional<double> coverage95_world;  // p_W_X, covariance, after alignment
+  std::optional<double> coverage95;                  // p_C_X, covariance_C
+  std::optional<double> coverage95_world;            // p_W_X, covariance, after alignment
   std::optional<double> nees_mean, nees_world_mean;  // 3 if honest
 };
 
 struct SegmentEvaluation {
   std::uint32_t segment = 0;
-  int poses = 0;  // that have a truth
+  int poses = 0;     // that have a truth
   Rigid3 T_truth_W;  // alignment used for tags: p_truth = T_truth_W * p_W
   bool aligned_with_orientations = false;
   double ate_se3_m = 0.0;   // RMS position error after SE(3) alignment on positions, as `evo_ape -a`

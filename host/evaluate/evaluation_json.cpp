@@ -36,7 +36,7 @@ Json tag_json(const TagEvaluation& tag) {
 }
 
 Json tags_json(const TagsEvaluation& tags) {
-  const auto part = [](const std::optional<Summary>& s, double Summary::* field) {
+  const auto part = [](const std::optional<Summary>& s, double Summary::*field) {
     return s ? Json((*s).*field) : Json(nullptr);
   };
   Json json{{"total", tags.total},

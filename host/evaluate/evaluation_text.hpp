@@ -17,6 +17,7 @@ namespace rfmvo::evaluate {
 
 // "realtime_factor" of the JSON that `rfmvo replay --json` writes; nothing if it is null there.
 // Errors: no JSON, no such key, not a number.
-[[nodiscard]] Result<std::optional<double>> realtime_factor_of(const std::string& replay_json, const std::string& where);
+[[nodiscard]] Result<std::optional<double>> realtime_factor_of(const std::string& replay_json,
+                                                               const std::string& where);
 
 }  // namespace rfmvo::evaluate

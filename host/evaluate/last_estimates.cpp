@@ -42,24 +42,36 @@ Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
 
 const char* label_of(TagStatus status) {
   switch (status) {
-    case TagStatus::kConverged: return "CONVERGED";
-    case TagStatus::kNoScale: return "NO_SCALE";
-    case TagStatus::kCircle: return "CIRCLE";
-    case TagStatus::kMirror: return "MIRROR";
-    case TagStatus::kWeakGeometry: return "WEAK_GEOMETRY";
-    case TagStatus::kMoved: return "MOVED";
-    case TagStatus::kStale: return "STALE";
-    case TagStatus::kTooFewReads: return "TOO_FEW_READS";
+    case TagStatus::kConverged:
+      return "CONVERGED";
+    case TagStatus::kNoScale:
+      return "NO_SCALE";
+    case TagStatus::kCircle:
+      return "CIRCLE";
+    case TagStatus::kMirror:
+      return "MIRROR";
+    case TagStatus::kWeakGeometry:
+      return "WEAK_GEOMETRY";
+    case TagStatus::kMoved:
+      return "MOVED";
+    case TagStatus::kStale:
+      return "STALE";
+    case TagStatus::kTooFewReads:
+      return "TOO_FEW_READS";
   }
   return "UNKNOWN";
 }
 
 const char* label_of(VoStatus status) {
   switch (status) {
-    case VoStatus::kInitialising: return "INITIALISING";
-    case VoStatus::kTracking: return "TRACKING";
-    case VoStatus::kDegraded: return "DEGRADED";
-    case VoStatus::kLost: return "LOST";
+    case VoStatus::kInitialising:
+      return "INITIALISING";
+    case VoStatus::kTracking:
+      return "TRACKING";
+    case VoStatus::kDegraded:
+      return "DEGRADED";
+    case VoStatus::kLost:
+      return "LOST";
   }
   return "UNKNOWN";
 }

@@ -63,13 +63,15 @@ ScaleEvaluation evaluate_scale(const LastEstimates& last, const simulate::Truth&
   if (path_m > 0.0) result.relative_error = weighted / path_m;
   add_eq31(last, truth, result);
 
-  const auto longest = std::max_element(
-      trajectory.segments.begin(), trajectory.segments.end(),
-      [](const SegmentEvaluation& a, const SegmentEvaluation& b) { return a.path_m < b.path_m; });
+  const auto longest =
+      std::max_element(trajectory.segments.begin(), trajectory.segments.end(),
+                       [](const SegmentEvaluation& a, const SegmentEvaluation& b) { return a.path_m < b.path_m; });
   // Without a metric path the scale of the last segment is the one to look at.
   std::optional<std::uint32_t> segment;
-  if (longest != trajectory.segments.end()) segment = longest->segment;
-  else if (!last.scales.empty()) segment = last.scales.rbegin()->first;
+  if (longest != trajectory.segments.end())
+    segment = longest->segment;
+  else if (!last.scales.empty())
+    segment = last.scales.rbegin()->first;
   if (!segment) return result;
   const auto found = last.scales.find(*segment);
   if (found != last.scales.end()) result.estimate = found->second;

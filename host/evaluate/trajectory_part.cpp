@@ -30,8 +30,7 @@ std::optional<SegmentEvaluation> evaluate_segment(std::uint32_t segment, const s
 
   result.aligned_with_orientations = spread_off_line_m(pairs) < kStraightSpread_m;
   const double weight = kOrientationLever_m * kOrientationLever_m;
-  const auto for_tags =
-      result.aligned_with_orientations ? align(pairs, {.orientation_weight_m2 = weight}) : se3;
+  const auto for_tags = result.aligned_with_orientations ? align(pairs, {.orientation_weight_m2 = weight}) : se3;
   result.T_truth_W = for_tags ? for_tags->T : se3->T;
   return result;
 }

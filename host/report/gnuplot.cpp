@@ -105,10 +105,10 @@ std::string inline_svg(const std::string& svg_file, const Plot& plot) {
     svg.erase(at, close + 8 - at);  // 8: the length of "</title>"
   }
   // Every file has the same ids; in one page they must differ.
-  replace_all(svg, "id='gp", "id='" + plot.name + "_gp");
-  replace_all(svg, "id=\"gp", "id=\"" + plot.name + "_gp");
-  replace_all(svg, "'#gp", "'#" + plot.name + "_gp");
-  replace_all(svg, "url(#gp", "url(#" + plot.name + "_gp");
+  replace_all(svg, " id='", " id='" + plot.name + "_");
+  replace_all(svg, " id=\"", " id=\"" + plot.name + "_");
+  replace_all(svg, "'#", "'#" + plot.name + "_");
+  replace_all(svg, "url(#", "url(#" + plot.name + "_");
   for (const PlotColour& colour : {kInk, kGrid, kPath, kGood, kDoubt, kStale, kTruth}) {
     replace_all(svg, colour.svg, colour.css);
     replace_all(svg, colour.svg_text, colour.css);

@@ -11,10 +11,10 @@ namespace rfmvo::report {
 // Colours in scripts are placeholders that gnuplot can parse; in the SVG they become CSS variables, so the
 // page decides how they look (light, dark, paper).
 struct PlotColour {
-  const char* gnuplot;  // "#rrggbb" as scripts write it
-  const char* svg;      // the same as gnuplot's SVG terminal writes it on lines
+  const char* gnuplot;   // "#rrggbb" as scripts write it
+  const char* svg;       // the same as gnuplot's SVG terminal writes it on lines
   const char* svg_text;  // and on text
-  const char* css;      // what it becomes
+  const char* css;       // what it becomes
 };
 inline constexpr PlotColour kInk{"#010101", "rgb(  1,   1,   1)", "rgb(1,1,1)", "var(--ink)"};
 inline constexpr PlotColour kGrid{"#020202", "rgb(  2,   2,   2)", "rgb(2,2,2)", "var(--grid)"};
@@ -34,7 +34,7 @@ struct Plot {
   std::string name;   // letters only: prefix of the ids in the SVG
   std::string title;  // for screen readers
   int width = 900, height = 400;
-  std::string script;  // after `set terminal` and `set output`
+  std::string script;               // after `set terminal` and `set output`
   std::vector<LegendEntry> legend;  // for the page; empty: the script has its own
 };
 

@@ -17,7 +17,7 @@ constexpr double kMargin_m = 0.4;       // around everything shown
 constexpr std::size_t kMaxLabels = 80;  // more numbers than that hide the map
 constexpr double kFilledMax_m = 1.0;    // larger ellipses are outlines only
 
-constexpr double kReach_m = 6.0;        // other positions farther than this from everything else stay outside
+constexpr double kReach_m = 6.0;  // other positions farther than this from everything else stay outside
 constexpr int kWidth = 1000;
 constexpr double kLeft_px = 85, kRight_px = 15, kTop_px = 12, kBottom_px = 68;
 
@@ -53,8 +53,7 @@ std::string ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covari
   if (!covariance.allFinite()) return "";
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
   if (!(solver.eigenvalues()[0] > 0.0)) return "";
-  const Eigen::Matrix2d axes =
-      solver.eigenvectors() * (kChi2_95_2dof * solver.eigenvalues()).cwiseSqrt().asDiagonal();
+  const Eigen::Matrix2d axes = solver.eigenvectors() * (kChi2_95_2dof * solver.eigenvalues()).cwiseSqrt().asDiagonal();
   std::string text;
   for (int i = 0; i <= kEllipsePoints; ++i) {
     const double angle = kTwoPi * i / kEllipsePoints;
@@ -125,8 +124,9 @@ Box extent(const ReportData& data, const View& view) {
 
 void add_paths(const ReportData& data, Sketch& sketch) {
   const View& view = sketch.view;
-  sketch.add({path_data(data.truth.path, view),
-              fmt::format("with lines lw 2.5 lc rgb '{}' dt '-' notitle", kTruth.gnuplot)}, kTruth, "╌", "true path");
+  sketch.add(
+      {path_data(data.truth.path, view), fmt::format("with lines lw 2.5 lc rgb '{}' dt '-' notitle", kTruth.gnuplot)},
+      kTruth, "╌", "true path");
   std::string text, start;
   for (const auto& path : estimated_paths(data)) {
     if (path.empty()) continue;
@@ -150,7 +150,8 @@ void add_hypotheses(const ReportData& data, Sketch& sketch) {
     }
   }
   sketch.add({lines, fmt::format("with lines lw 0.8 lc rgb '{}' dt '.' notitle", kDoubt.gnuplot)});
-  sketch.add({points, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' notitle", kDoubt.gnuplot)}, kDoubt, "○", "other position that fits");
+  sketch.add({points, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' notitle", kDoubt.gnuplot)}, kDoubt, "○",
+             "other position that fits");
 }
 
 void add_tags(const ReportData& data, Trust trust, const PlotColour& colour, const char* title, Sketch& sketch) {
@@ -180,7 +181,8 @@ void add_true_tags(const ReportData& data, Sketch& sketch) {
     lines += point(view(p)) + point(view(tag->second.p_W_X_m)) + "\n";
   }
   sketch.add({lines, fmt::format("with lines lw 1 lc rgb '{}' notitle", kTruth.gnuplot)});
-  sketch.add({points, fmt::format("with points pt 2 ps 0.7 lw 1.5 lc rgb '{}' notitle", kTruth.gnuplot)}, kTruth, "×", "true tag");
+  sketch.add({points, fmt::format("with points pt 2 ps 0.7 lw 1.5 lc rgb '{}' notitle", kTruth.gnuplot)}, kTruth, "×",
+             "true tag");
 }
 
 void add_labels(const ReportData& data, Sketch& sketch) {
@@ -203,8 +205,8 @@ std::string ranges(const Plot& plot, const View& view, const Box& box) {
       "set size ratio -1\nset key off\nset lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n"
       "set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset xlabel '{} (m)'\nset ylabel '{} (m)'\n"
       "set xrange [{:.4f}:{:.4f}]\nset yrange [{:.4f}:{:.4f}]\n",
-      kLeft_px / w, 1.0 - kRight_px / w, kBottom_px / h, 1.0 - kTop_px / h, "xyz"[view.right], "xyz"[view.up], box.low.x(),
-      box.high.x(), box.low.y(), box.high.y());
+      kLeft_px / w, 1.0 - kRight_px / w, kBottom_px / h, 1.0 - kTop_px / h, "xyz"[view.right], "xyz"[view.up],
+      box.low.x(), box.high.x(), box.low.y(), box.high.y());
 }
 
 // The plot's height follows from equal axes; what is too flat gets more room above and below.

@@ -35,7 +35,8 @@ border:1px solid currentColor}
 @media print{:root{color-scheme:light;--bg:#fff;--card:#fff;--ink:#000;--soft:#444;--grid:#ddd;--line:#bbb;--path:#777;
 --good:#0b4ea2;--doubt:#a85600;--stale:#6b34a0;--truth:#0d6b35;--bad:#a01818}
 main{max-width:none;padding:0}section,.card{break-inside:avoid}section.long{break-inside:auto}tr{break-inside:avoid}
-body{font-size:11px}table{font-size:.74rem}th,td{padding:2px 5px}.scroll{overflow:visible}}
+body{font-size:11px}table{font-size:.74rem}th,td{padding:2px 5px}.scroll{overflow:visible}
+td.epc{white-space:normal;word-break:break-all;min-width:9em;font-size:.7rem}}
 )css";
 
 }  // namespace rfmvo::report

@@ -15,8 +15,8 @@ constexpr double kCmPerM = 100.0;
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
 std::string card(const std::string& label, const std::string& value, const std::string& note = "") {
-  return fmt::format("<div class=\"card\"><span>{}</span><b>{}</b><small>{}</small></div>\n", escape(label), escape(value),
-                     escape(note));
+  return fmt::format("<div class=\"card\"><span>{}</span><b>{}</b><small>{}</small></div>\n", escape(label),
+                     escape(value), escape(note));
 }
 
 std::string cm(const std::optional<double>& m) { return m ? fmt::format("{:.1f} cm", *m * kCmPerM) : "–"; }
@@ -50,14 +50,18 @@ std::string scale_card(const ReportData& data) {
 
 const char* class_of(TagStatus status) {
   switch (status) {
-    case TagStatus::kConverged: return "good";
+    case TagStatus::kConverged:
+      return "good";
     case TagStatus::kCircle:
     case TagStatus::kMirror:
-    case TagStatus::kWeakGeometry: return "doubt";
+    case TagStatus::kWeakGeometry:
+      return "doubt";
     case TagStatus::kMoved:
-    case TagStatus::kStale: return "stale";
+    case TagStatus::kStale:
+      return "stale";
     case TagStatus::kNoScale:
-    case TagStatus::kTooFewReads: return "";
+    case TagStatus::kTooFewReads:
+      return "";
   }
   return "";
 }
@@ -83,8 +87,8 @@ std::string error_cells(const ReportData& data, const Epc& epc) {
 std::string tag_row(const ReportData& data, std::size_t index) {
   const TagEstimate& tag = data.tags[index];
   std::string row = fmt::format(
-      "<tr><td>{}</td><td class=\"text epc\">{}</td><td class=\"text\"><span class=\"badge {}\">{}</span></td>", index + 1,
-      escape(tag.epc.hex()), class_of(tag.status), evaluate::label_of(tag.status));
+      "<tr><td>{}</td><td class=\"text epc\">{}</td><td class=\"text\"><span class=\"badge {}\">{}</span></td>",
+      index + 1, escape(tag.epc.hex()), class_of(tag.status), evaluate::label_of(tag.status));
   if (evaluate::is_located(tag)) {
     const Eigen::Vector3d sigma = kCmPerM * evaluate::sigma_of(tag.covariance_m2);
     for (int i = 0; i < 3; ++i) row += cell(fmt::format("{:.3f}", tag.p_W_X_m[i]));
@@ -142,7 +146,9 @@ std::string summary_cards(const ReportData& data) {
                 data.evaluation ? fmt::format("true: {:.2f} m", data.evaluation->trajectory.path_m) : "");
   if (data.evaluation) {
     const auto& e = *data.evaluation;
-    const auto mean = [](const std::optional<evaluate::Summary>& s) { return s ? std::optional(s->mean) : std::nullopt; };
+    const auto mean = [](const std::optional<evaluate::Summary>& s) {
+      return s ? std::optional(s->mean) : std::nullopt;
+    };
     cards += card("Tag error", cm(mean(e.tags.error_m)), "mean, in the world");
     cards += card("Tag error to camera", cm(mean(e.tags.camera_relative_m)), "mean, at the closest approach");
     cards += card("Inside 95 % ellipsoid", percent(e.tags.coverage95), "of the located tags; 95 % is honest");
@@ -156,7 +162,8 @@ std::string tag_table(const ReportData& data) {
   std::string text =
       "<section class=\"long\"><h2>Tags</h2>\n<p>The numbers are those on the maps. σ: one standard deviation of the "
       "position shown. Fits: positions that fit the reads.</p>\n<div class=\"scroll\"><table><thead><tr><th>#</th>"
-      "<th class=\"text\">EPC</th><th class=\"text\">Status</th><th>x (m)</th><th>y (m)</th><th>z (m)</th><th>σx (cm)</th>"
+      "<th class=\"text\">EPC</th><th class=\"text\">Status</th><th>x (m)</th><th>y (m)</th><th>z (m)</th><th>σx "
+      "(cm)</th>"
       "<th>σy (cm)</th><th>σz (cm)</th><th>Fits</th><th>HDOP</th><th>Reads</th>";
   if (data.evaluation) text += "<th>Error (cm)</th><th>To cam. (cm)</th>";
   text += "</tr></thead><tbody>\n";
@@ -173,9 +180,11 @@ std::string health_table(const ReportData& data) {
     text += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td></tr>\n", name, escape(value));
   };
   text += "<table><tbody>\n";
-  row("Visual odometry", fmt::format("{}, {} inliers, segment {}", evaluate::label_of(h.vo_status), h.inliers, h.segment));
+  row("Visual odometry",
+      fmt::format("{}, {} inliers, segment {}", evaluate::label_of(h.vo_status), h.inliers, h.segment));
   row("Frames, camera poses", fmt::format("{}, {}", h.frames, h.poses));
-  row("Tag reads", fmt::format("{}; {} without a camera pose, {} rejected", h.reads, h.reads_without_pose, h.reads_rejected));
+  row("Tag reads",
+      fmt::format("{}; {} without a camera pose, {} rejected", h.reads, h.reads_without_pose, h.reads_rejected));
   row("Tags", fmt::format("{} seen, {} located", h.tags, h.tags_located));
   row("Faults", h.faults == 0 ? "none" : fmt::format("{}; the last: {}", h.faults, h.last_fault));
   return text + "</tbody></table></section>\n";

@@ -94,17 +94,24 @@ std::optional<Plot> scale_over_time(const ReportData& data) {
   const Range range = scale_range(data);
   const std::string points = scale_data(data);
   Script script;
-  script.add({points, fmt::format("using 1:3:4 with filledcurves fs transparent solid 0.14 noborder lc rgb '{}' title '2 σ'",
-                                  kGood.gnuplot)});
-  script.add({points, fmt::format("using 1:5:6 with filledcurves fs transparent solid 0.24 noborder lc rgb '{}' title '1 σ'",
-                                  kGood.gnuplot)});
+  script.add(
+      {points, fmt::format("using 1:3:4 with filledcurves fs transparent solid 0.14 noborder lc rgb '{}' title '2 σ'",
+                           kGood.gnuplot)});
+  script.add(
+      {points, fmt::format("using 1:5:6 with filledcurves fs transparent solid 0.24 noborder lc rgb '{}' title '1 σ'",
+                           kGood.gnuplot)});
   script.add({points, fmt::format("using 1:2 with lines lw 2 lc rgb '{}' title 'scale'", kGood.gnuplot)});
   if (data.evaluation && data.evaluation->scale.true_m_per_unit) {
     const double truth = *data.evaluation->scale.true_m_per_unit;
     script.add({fmt::format("0 {0:.6g}\n{1:.3f} {0:.6g}\n", truth, end_time_s(data)),
                 fmt::format("with lines lw 1.5 dt '-' lc rgb '{}' title 'true'", kTruth.gnuplot)});
   }
-  Plot plot{.name = "scale", .title = "Scale over time", .width = kWidth, .height = kHeight, .script = axes_style(), .legend = {}};
+  Plot plot{.name = "scale",
+            .title = "Scale over time",
+            .width = kWidth,
+            .height = kHeight,
+            .script = axes_style(),
+            .legend = {}};
   plot.script += fmt::format(
       "set key top right horizontal\nset xlabel 'time (s)'\nset ylabel 'metres per unit of odometry'\n"
       "set xrange [0:{:.3f}]\nset yrange [{:.6g}:{:.6g}]\n",
@@ -125,8 +132,14 @@ std::optional<Plot> tag_sigma_over_time(const ReportData& data) {
   if (lines.empty()) return std::nullopt;
   Script script;
   script.add({lines, fmt::format("with lines lw 0.8 lc rgb '{}' title 'one tag'", kPath.gnuplot)});
-  script.add({median_sigma(data), fmt::format("with lines lw 2.5 lc rgb '{}' title 'median of the tags'", kGood.gnuplot)});
-  Plot plot{.name = "sigma", .title = "Certainty of the tags over time", .width = kWidth, .height = kHeight, .script = axes_style(), .legend = {}};
+  script.add(
+      {median_sigma(data), fmt::format("with lines lw 2.5 lc rgb '{}' title 'median of the tags'", kGood.gnuplot)});
+  Plot plot{.name = "sigma",
+            .title = "Certainty of the tags over time",
+            .width = kWidth,
+            .height = kHeight,
+            .script = axes_style(),
+            .legend = {}};
   plot.script += fmt::format(
       "set key top right horizontal\nset logscale y\nset xlabel 'time (s)'\nset ylabel 'σ of the worst axis (cm)'\n"
       "set xrange [0:{:.3f}]\n",

@@ -20,7 +20,8 @@ inline constexpr std::int64_t kFrame_ns = 40'000'000;
 inline DeviceTime frame_time(int i) { return {kStart_ns + i * kFrame_ns}; }
 
 inline Epc epc_of(int i) {
-  const std::vector<std::uint8_t> bytes = {0x30, 0x14, static_cast<std::uint8_t>(i / 256), static_cast<std::uint8_t>(i % 256)};
+  const std::vector<std::uint8_t> bytes = {0x30, 0x14, static_cast<std::uint8_t>(i / 256),
+                                           static_cast<std::uint8_t>(i % 256)};
   return Epc::from_bytes(bytes).value();
 }
 
@@ -109,7 +110,8 @@ inline Eigen::Vector3d sample(const Eigen::Matrix3d& covariance, std::mt19937_64
 }
 
 // A perfect result with noise of 2 cm on the path and 5 cm on the tags.
-inline std::vector<Estimate> noisy_result(const simulate::Truth& truth, const Perfect& how = {}, std::uint64_t seed = 7) {
+inline std::vector<Estimate> noisy_result(const simulate::Truth& truth, const Perfect& how = {},
+                                          std::uint64_t seed = 7) {
   std::mt19937_64 random(seed);
   std::vector<Estimate> result = perfect_result(truth, how);
   const Eigen::Matrix3d path = 4e-4 * Eigen::Matrix3d::Identity(), position = 25e-4 * Eigen::Matrix3d::Identity();

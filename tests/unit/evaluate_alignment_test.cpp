@@ -1,7 +1,6 @@
-#include "evaluate/alignment.hpp"
-
 #include <gtest/gtest.h>
 
+#include "evaluate/alignment.hpp"
 #include "support/evaluate_world.hpp"
 
 namespace rfmvo::evaluate {

@@ -1,7 +1,6 @@
-#include "evaluate/evaluation.hpp"
-
 #include <gtest/gtest.h>
 
+#include "evaluate/evaluation.hpp"
 #include "support/evaluate_world.hpp"
 
 namespace rfmvo::evaluate {
@@ -199,8 +198,10 @@ TEST(Evaluate, SegmentsAreAlignedEachByItself) {
   for (std::uint32_t segment = 0; segment < 2; ++segment) {
     Trajectory part = perfect_trajectory(truth, {.T_W_truth = worlds[segment]});
     part.segment = segment;
-    if (segment == 0) part.poses.resize(200);
-    else part.poses.erase(part.poses.begin(), part.poses.begin() + 200);
+    if (segment == 0)
+      part.poses.resize(200);
+    else
+      part.poses.erase(part.poses.begin(), part.poses.begin() + 200);
     result.emplace_back(part);
   }
   auto& tag = std::get<TagEstimate>(result[result.size() - 3]);

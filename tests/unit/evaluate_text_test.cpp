@@ -1,5 +1,3 @@
-#include "evaluate/evaluation_text.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -10,6 +8,7 @@
 
 #include "commands/export_text.hpp"
 #include "commands/whole_file.hpp"
+#include "evaluate/evaluation_text.hpp"
 #include "support/evaluate_world.hpp"
 
 namespace rfmvo::evaluate {
