@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
 #include <deque>
 
 #include "config/calibration.hpp"
@@ -16,12 +15,12 @@ namespace rfmvo {
 // Directions are searched in the frame D of the antenna: z along the boresight, because
 // alpha, beta in [0, 180 deg] cover exactly the hemisphere z >= 0 (docs/paper.md).
 struct AntennaArray {
-  Eigen::Matrix3Xd camera_V;        // 3 x L: X_C[k,i] minus the array's origin X_C[k,1], units of V
-  Eigen::Matrix3Xd lever_V_m;       // 3 x L: antenna minus camera, axes of V, metres: Eq. (12)
-  Eigen::VectorXd phase_step_rad;   // L-1: phi[k,i+1] - phi[k,i], in [-2 pi, 2 pi]: Eq. (2)
-  Eigen::VectorXd duration_s;       // L-1: time between the two reads
+  Eigen::Matrix3Xd camera_V;                     // 3 x L: X_C[k,i] minus the array's origin X_C[k,1], units of V
+  Eigen::Matrix3Xd lever_V_m;                    // 3 x L: antenna minus camera, axes of V, metres: Eq. (12)
+  Eigen::VectorXd phase_step_rad;                // L-1: phi[k,i+1] - phi[k,i], in [-2 pi, 2 pi]: Eq. (2)
+  Eigen::VectorXd duration_s;                    // L-1: time between the two reads
   Eigen::Array<bool, Eigen::Dynamic, 1> usable;  // L-1: false = the two phases are not comparable (hop)
-  double wavelength_m = 0.0;        // lambda, mean over the array
+  double wavelength_m = 0.0;                     // lambda, mean over the array
   Eigen::Quaterniond R_V_D = Eigen::Quaterniond::Identity();
 
   [[nodiscard]] Eigen::Index elements() const { return camera_V.cols(); }

@@ -12,15 +12,15 @@
 namespace rfmvo {
 namespace {
 
-constexpr double kConverged_m = 1e-4;        // move of X_T between two outer iterations
-constexpr double kConvergedScale = 1e-4;     // relative move of gamma
-constexpr int kMaxSteps = 50;                // of Levenberg-Marquardt per outer iteration
+constexpr double kConverged_m = 1e-4;     // move of X_T between two outer iterations
+constexpr double kConvergedScale = 1e-4;  // relative move of gamma
+constexpr int kMaxSteps = 50;             // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
-constexpr double kMaxRange_m = 20.0;         // no passive UHF tag answers from farther
-constexpr double kRunaway_m = 1e4;           // X_T goes to infinity where the data say "plane wave"
-constexpr double kMinDistance_m = 1e-3;      // keeps the bearing of a tag on an antenna defined
-constexpr double kUnknownSigma_m = 10.0;     // 1 sigma of a direction the data say nothing about
-constexpr double kUnknownLogScale = 1.0;     // same for the scale, relative
+constexpr double kMaxRange_m = 20.0;      // no passive UHF tag answers from farther
+constexpr double kRunaway_m = 1e4;        // X_T goes to infinity where the data say "plane wave"
+constexpr double kMinDistance_m = 1e-3;   // keeps the bearing of a tag on an antenna defined
+constexpr double kUnknownSigma_m = 10.0;  // 1 sigma of a direction the data say nothing about
+constexpr double kUnknownLogScale = 1.0;  // same for the scale, relative
 
 struct State {
   Eigen::Vector3d p_X_m;
@@ -74,8 +74,7 @@ Eigen::VectorXd measured_steps(std::span<const AntennaTerm> antennas, const Stat
 }
 
 bool sane(const State& state) {
-  return std::isfinite(state.gamma) && state.gamma > 0.0 && state.p_X_m.allFinite() &&
-         state.p_X_m.norm() < kRunaway_m;
+  return std::isfinite(state.gamma) && state.gamma > 0.0 && state.p_X_m.allFinite() && state.p_X_m.norm() < kRunaway_m;
 }
 
 // Eq. (18) by Levenberg-Marquardt with Marquardt's scaling. The norm of a scalar in Eq. (18) is read
@@ -139,7 +138,7 @@ Eigen::Matrix4d covariance_of(const DistanceResiduals& residuals, double sigma_m
 double cycle_step_by_length_rad(double phase_step_rad, double antenna_step_m, double wavelength_m) {
   if (antenna_step_m <= 0.25 * wavelength_m) return cycle_step_rad(phase_step_rad);  // Eq. (21)
   const double size = std::abs(phase_step_rad);                                      // Eq. (22)
-  if (size >= kPi || size == 0.0) return 0.0;  // the paper leaves zero open
+  if (size >= kPi || size == 0.0) return 0.0;                                        // the paper leaves zero open
   return phase_step_rad > 0.0 ? -kTwoPi : kTwoPi;
 }
 

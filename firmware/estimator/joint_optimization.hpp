@@ -32,11 +32,11 @@ struct ArraySolution {
   bool found = false;      // false: parallel lines, no convergence, or a position out of any reader's range
   bool converged = false;  // within max_iterations: the paper repeats "until it converges"
   int iterations = 0;
-  Eigen::Vector3d p_X_m = Eigen::Vector3d::Zero();  // X_T: axes of V, origin the camera at the first read, metres
-  double gamma = 0.0;                               // metres per unit of V
-  double sigma_m = 0.0;                             // rms residual of Eq. (18)
+  Eigen::Vector3d p_X_m = Eigen::Vector3d::Zero();       // X_T: axes of V, origin the camera at the first read, metres
+  double gamma = 0.0;                                    // metres per unit of V
+  double sigma_m = 0.0;                                  // rms residual of Eq. (18)
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // of (X_T, gamma): sigma^2 (J'J)^-1, bounded
-  std::vector<IncidentAngles> angles;               // refined, one per antenna
+  std::vector<IncidentAngles> angles;                    // refined, one per antenna
 };
 
 [[nodiscard]] ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double gamma,
@@ -54,7 +54,7 @@ struct DistanceResiduals {
 };
 // distance_step_m: Delta d_A of Eq. (19), in the order of the residuals.
 [[nodiscard]] DistanceResiduals distance_residuals(std::span<const AntennaTerm> antennas,
-                                                   const Eigen::VectorXd& distance_step_m,
-                                                   const Eigen::Vector3d& p_X_m, double gamma);
+                                                   const Eigen::VectorXd& distance_step_m, const Eigen::Vector3d& p_X_m,
+                                                   double gamma);
 
 }  // namespace rfmvo

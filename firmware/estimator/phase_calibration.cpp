@@ -13,7 +13,7 @@ constexpr double kLengthStep_m = 0.25;
 constexpr std::int64_t kMinHops = 40;
 // |sum|^2 / hops is 1 on average by chance, and above 16 once in 10^7 times: e^-16 per candidate.
 constexpr double kMinSignificance = 16.0;
-constexpr double kMaxGap_s = 0.5;        // farther apart, the motion between the reads hides the slope
+constexpr double kMaxGap_s = 0.5;  // farther apart, the motion between the reads hides the slope
 
 double candidate_m(int n) { return kFirstLength_m + kLengthStep_m * n; }
 

@@ -25,15 +25,18 @@ void cosine_of_turns(ArrayXd& t, ArrayXd& y) {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
   t = (t - ((t + kRound) - kRound)) * kPi;       // in [-pi/2, pi/2]
   y = t * t;
-  t *= 1.0 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 +
-       y * (1.0 / 6227020800.0 + y * (-1.0 / 1307674368000.0)))))));
+  t *= 1.0 +
+       y * (-1.0 / 6 +
+            y * (1.0 / 120 +
+                 y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 +
+                                                                                    y * (-1.0 / 1307674368000.0)))))));
   t = 1.0 - 2.0 * t * t;
 }
 
 // The usable steps of an array in turns, as functions of the direction u (in D):
 //   theta / (2 pi) = phase + (lever + gamma * camera)' u,  theta of Eq. (6), Delta h of Eq. (1).
 struct Steps {
-  ArrayXd phase;                  // Delta phi
+  ArrayXd phase;                                   // Delta phi
   Eigen::Array<double, Eigen::Dynamic, 3> lever;   // 2 / lambda * step of the lever arm (0 without fix_rotation)
   Eigen::Array<double, Eigen::Dynamic, 3> camera;  // 2 / lambda * step of the camera, per unit of gamma
 };

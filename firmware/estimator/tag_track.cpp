@@ -21,7 +21,9 @@ double sweep_rad(const std::vector<Eigen::Vector3d>& positions, const Eigen::Vec
 }  // namespace
 
 TagTrack::TagTrack(const PaperConfig& config, const std::vector<AntennaCalibration>& antennas)
-    : config_(config), antennas_(&antennas), by_antenna_(antennas.size()),
+    : config_(config),
+      antennas_(&antennas),
+      by_antenna_(antennas.size()),
       elements_(static_cast<std::uint64_t>(std::max<std::int64_t>(config.elements, 2))) {
   array_options_.fix_rotation = config.fix_rotation;
   array_options_.turning_frame = config.fix_rotation && config.fix_sphere_average;
@@ -74,8 +76,7 @@ void TagTrack::search(const PhaseCalibration& phases) {
   }
   const ScaleRange range =
       scale_range(arrays, {config_.max_speed_m_s, config_.min_read_rate_hz, config_.fix_scale_range});
-  const SpectrumPeak peak =
-      search_spectrum(arrays, range, rad_from_deg(config_.angle_step_deg), config_.scale_step);
+  const SpectrumPeak peak = search_spectrum(arrays, range, rad_from_deg(config_.angle_step_deg), config_.scale_step);
   if (!peak.found) return;
   for (std::size_t j = 0; j < record.members.size(); ++j) record.members[j].angles = peak.angles[j];
   record.range = range;

@@ -20,9 +20,9 @@ namespace rfmvo {
 
 // The paper's whole answer for one tag in one antenna array.
 struct SolvedArray {
-  DeviceTime first, last;   // of its reads
-  ArraySolution solution;   // p_X_m: axes of V, origin the camera at `first`
-  Hdop hdop;                // x-y of W
+  DeviceTime first, last;  // of its reads
+  ArraySolution solution;  // p_X_m: axes of V, origin the camera at `first`
+  Hdop hdop;               // x-y of W
   double bearing_sweep_rad = 0.0;
   std::uint32_t reads = 0;  // M x L
 };

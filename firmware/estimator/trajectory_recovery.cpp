@@ -62,8 +62,8 @@ std::vector<MetricPose> TrajectoryRecovery::path() const {
 
 Eigen::Vector3d position_at(const std::vector<MetricPose>& path, DeviceTime time) {
   RFMVO_ASSERT(!path.empty());
-  const auto after = std::lower_bound(path.begin(), path.end(), time,
-                                      [](const MetricPose& p, DeviceTime t) { return p.time < t; });
+  const auto after =
+      std::lower_bound(path.begin(), path.end(), time, [](const MetricPose& p, DeviceTime t) { return p.time < t; });
   if (after == path.begin()) return path.front().T_W_C.t;
   if (after == path.end()) return path.back().T_W_C.t;
   const auto before = std::prev(after);

@@ -13,8 +13,8 @@ double spatial_power(const Antenna& antenna, double alpha, double beta, double g
     const double dx = gamma * (antenna.camera[i + 1][0] - antenna.camera[i][0]);
     const double dy = gamma * (antenna.camera[i + 1][1] - antenna.camera[i][1]);
     const double dz = gamma * (antenna.camera[i + 1][2] - antenna.camera[i][2]);
-    const double dh = dx * std::cos(alpha) * std::cos(beta) + dy * std::sin(alpha) * std::cos(beta) +
-                      dz * std::sin(beta);  // Eq. (1)
+    const double dh =
+        dx * std::cos(alpha) * std::cos(beta) + dy * std::sin(alpha) * std::cos(beta) + dz * std::sin(beta);  // Eq. (1)
     const double dphi = antenna.phase[i + 1] - antenna.phase[i];
     sum += std::cos(dphi + 4.0 * kPi / antenna.wavelength * dh);
   }

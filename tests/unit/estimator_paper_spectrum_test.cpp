@@ -101,8 +101,7 @@ TEST(ScaleRange, HoldsTheTruthAtASlowEvenPace) {
 TEST(ScaleRange, LosesTheTruthWhenReadsAreMissedUnlessFixed) {
   auto path = paper_scene::weave(63, 1.0);
   path.erase(path.begin() + 30, path.begin() + 33);  // three missed reads: one step of 20 cm
-  AntennaArray array =
-      paper_scene::array_of(path, paper_scene::plane_phases(path, direction_of(kAngles), 0.0), 1.7);
+  AntennaArray array = paper_scene::array_of(path, paper_scene::plane_phases(path, direction_of(kAngles), 0.0), 1.7);
   array.duration_s(29) = 0.4;
   EXPECT_LT(scale_range({&array, 1}, {1.0, 10.0, false}).max, 1.7);
   const ScaleRange fixed = scale_range({&array, 1}, {1.0, 10.0, true});
