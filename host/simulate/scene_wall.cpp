@@ -28,8 +28,8 @@ double travelled_m(double t_s) {
 Rigid3 body_pose(double t_s) {
   const double x_m = travelled_m(t_s);
   const double slow_rad_m = kTwoPi / 4.0, fast_rad_m = kTwoPi / 1.7;
-  const double y_m = 0.28 * std::sin(slow_rad_m * x_m) + 0.05 * std::sin(fast_rad_m * x_m);
-  const double slope = 0.28 * slow_rad_m * std::cos(slow_rad_m * x_m) + 0.05 * fast_rad_m * std::cos(fast_rad_m * x_m);
+  const double y_m = 0.28 * std::sin(slow_rad_m * x_m) + 0.02 * std::sin(fast_rad_m * x_m);
+  const double slope = 0.28 * slow_rad_m * std::cos(slow_rad_m * x_m) + 0.02 * fast_rad_m * std::cos(fast_rad_m * x_m);
   return cart_pose({x_m, y_m, 0.0}, 1.0, slope);
 }
 
