@@ -66,8 +66,8 @@ DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std:
   const double bias_sign = scale_random.uniform() < 0.5 ? -1.0 : 1.0;
   result.scale_m_per_unit = gamma;
 
-  UnscaledPose pose;                      // without n
-  double scale_error = 0.0;               // e
+  UnscaledPose pose;         // without n
+  double scale_error = 0.0;  // e
   Eigen::Quaterniond R_theta = Eigen::Quaterniond::Identity();
   const Eigen::Quaterniond R_V0_W = truth.front().T_W_C.R.conjugate();  // V0: V without drift
   for (std::size_t k = 0; k < truth.size(); ++k) {

@@ -65,9 +65,11 @@ void add_tags(Scene& scene, Environment& room, Random& random) {
 
 void furnish(Environment& room, Random& random) {
   const TexturePointer plaster = plaster_texture(random), floor = concrete_texture(random);
-  Surface wall{{-3.0, kWallY_m, 2.8}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ(), 11.0, 2.8, plaster, {330, 330}, 1.0F};
+  Surface wall{
+      {-3.0, kWallY_m, 2.8}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ(), 11.0, 2.8, plaster, {330, 330}, 1.0F};
   room.surfaces.push_back(wall);
-  Surface ground{{-3.0, kWallY_m, 0.0}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY(), 11.0, 4.0, floor, {400, 400}, 0.9F};
+  Surface ground{
+      {-3.0, kWallY_m, 0.0}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY(), 11.0, 4.0, floor, {400, 400}, 0.9F};
   room.surfaces.push_back(ground);
   const TexturePointer checks = checkerboard_texture(kSquares);
   for (const Board& board : kBoards) {

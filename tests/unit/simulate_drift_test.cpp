@@ -1,11 +1,10 @@
-#include "simulate/drift.hpp"
-
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "simulate/drift.hpp"
 #include "simulate/scene.hpp"
 
 namespace rfmvo::simulate {
@@ -58,7 +57,8 @@ TEST(SimulateDrift, PerfectOdometryTimesTheScaleIsTheTruePath) {
 // The table of drift classes gives the median rms after Sim(3) over 6 m. The path there was another, and
 // one rotation or scale path dominates the rest: a factor of 1.6 either way still tells the classes apart.
 TEST(SimulateDrift, ClassesAreAsBadAsTheyWereMeasured) {
-  for (const auto& [name, rms_m] : {std::pair{"BEST", 0.0021}, {"NOMINAL", 0.0051}, {"DEGRADED", 0.013}, {"BAD", 0.058}}) {
+  for (const auto& [name, rms_m] :
+       {std::pair{"BEST", 0.0021}, {"NOMINAL", 0.0051}, {"DEGRADED", 0.013}, {"BAD", 0.058}}) {
     const double measured_m = median_rms_m(name);
     RecordProperty(std::string("median_rms_mm_") + name, std::to_string(1e3 * measured_m));
     EXPECT_GT(measured_m, rms_m / 1.6) << name;

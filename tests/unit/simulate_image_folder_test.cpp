@@ -1,10 +1,9 @@
-#include "simulate/image_folder.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "simulate/image_folder.hpp"
 #include "simulate/simulation.hpp"
 
 namespace rfmvo::simulate {
@@ -15,13 +14,15 @@ namespace fs = std::filesystem;
 class ImageFolderTest : public testing::Test {
  protected:
   void SetUp() override {
-    root_ = fs::path(testing::TempDir()) / ("rfmvo_images_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    root_ = fs::path(testing::TempDir()) /
+            ("rfmvo_images_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(root_);
     fs::create_directories(root_ / "images");
     put("calib.txt", "# fx fy cx cy width height model\n500 501 320 240 640 480 radtan 0.1 -0.2 0.001 0.002 0.05\n");
     put("times.txt", "# t filename\n0.0 images/a.png\n0.1 images/b.png\n0.2 images/c.png\n");
     put("groundtruth.txt", "0.05 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.3 3 0 0 0 0 0 1\n");
-    for (const char* name : {"images/a.png", "images/b.png", "images/c.png"}) put(name, std::string("bytes of ") + name);
+    for (const char* name : {"images/a.png", "images/b.png", "images/c.png"})
+      put(name, std::string("bytes of ") + name);
   }
   void TearDown() override { fs::remove_all(root_); }
 

@@ -69,7 +69,8 @@ TEST(PhysicalLink, FloorReflectionIsTheMirrorImage) {
   const Sight sight = sight_of(scene, 0.0, 0, 0);
   scene.tags[0].p_S_X_m = sight.p_S_A_m + Eigen::Vector3d(0.0, 2.0, 0.0);
   Environment floor;
-  floor.reflectors.push_back({{0, 0, sight.p_S_A_m.z() - 0.7}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), 50, 50, -1e-6});
+  floor.reflectors.push_back(
+      {{0, 0, sight.p_S_A_m.z() - 0.7}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), 50, 50, -1e-6});
   const auto power_and_phase = [&](const Environment& e) {
     scene.environment = std::make_shared<const Environment>(e);
     const LinkState state = make_physical_link(scene)(0.0, 0, 0, kFrequency_hz);

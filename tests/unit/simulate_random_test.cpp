@@ -1,8 +1,8 @@
-#include "simulate/random.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "simulate/random.hpp"
 
 namespace rfmvo::simulate {
 namespace {

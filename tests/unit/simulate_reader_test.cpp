@@ -1,5 +1,3 @@
-#include "simulate/reader.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <map>
 
 #include "base/units.hpp"
+#include "simulate/reader.hpp"
 
 namespace rfmvo::simulate {
 namespace {
@@ -18,7 +17,9 @@ Scene scene_of(const std::string& name, std::uint64_t seed = 1) {
   return make_scene(options).value();
 }
 
-double rate_hz(const Scene& scene, std::size_t reads) { return static_cast<double>(reads) / (scene.end_s() - scene.start_s()); }
+double rate_hz(const Scene& scene, std::size_t reads) {
+  return static_cast<double>(reads) / (scene.end_s() - scene.start_s());
+}
 
 TEST(SimulateReader, PhaseWithoutNoiseIsDistancePlusOffsetsToHalfACount) {
   Scene scene = scene_of("S3");
@@ -35,14 +36,16 @@ TEST(SimulateReader, PhaseWithoutNoiseIsDistancePlusOffsetsToHalfACount) {
     const double expected_rad = 4.0 * kPi * reads[i].frequency_hz * d_m / kSpeedOfLight_m_s +
                                 hardware.tag_offset_rad[s.tag] + hardware.port_offset_rad[s.antenna];
     const double half_step_rad = 0.5 * kTwoPi / 2048.0;  // 12 bits, even counts
-    EXPECT_LE(std::abs(std::remainder(reads[i].phase.turn_q16 * kTwoPi / 65536.0 - expected_rad, kTwoPi)), half_step_rad + 1e-9);
+    EXPECT_LE(std::abs(std::remainder(reads[i].phase.turn_q16 * kTwoPi / 65536.0 - expected_rad, kTwoPi)),
+              half_step_rad + 1e-9);
   }
 }
 
 TEST(SimulateReader, ReportsOnlyEvenCountsOfTwelveBits) {
   const Scene scene = scene_of("S3");
   const RadioLink link = make_statistical_link(scene, 1);
-  for (const TagRead& read : report(scene, statistical_inventory(scene, link, 1), link, draw_hardware(20, 2, 1), 1, DeviceTime{})) {
+  for (const TagRead& read :
+       report(scene, statistical_inventory(scene, link, 1), link, draw_hardware(20, 2, 1), 1, DeviceTime{})) {
     EXPECT_EQ(read.phase.turn_q16 % 32, 0);
     EXPECT_EQ(read.seen_count, 1);
     EXPECT_EQ(read.time.ns % 1000, 0);

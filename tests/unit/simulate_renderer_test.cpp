@@ -1,7 +1,6 @@
-#include "simulate/renderer.hpp"
-
 #include <gtest/gtest.h>
 
+#include "simulate/renderer.hpp"
 #include "simulate/scene.hpp"
 
 namespace rfmvo::simulate {
@@ -10,8 +9,16 @@ namespace {
 TexturePointer plain(float grey) { return std::make_shared<const Texture>(2, std::vector<float>(16, grey)); }
 
 // Faces a camera at the origin that looks along +y (image right = x, image down = -z).
-Surface facing(double left_m, double top_m, double distance_m, double width_m, double height_m, TexturePointer texture) {
-  return {{left_m, distance_m, top_m}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ(), width_m, height_m, std::move(texture), {4, 4}, 1.0F};
+Surface facing(double left_m, double top_m, double distance_m, double width_m, double height_m,
+               TexturePointer texture) {
+  return {{left_m, distance_m, top_m},
+          Eigen::Vector3d::UnitX(),
+          -Eigen::Vector3d::UnitZ(),
+          width_m,
+          height_m,
+          std::move(texture),
+          {4, 4},
+          1.0F};
 }
 
 const Rigid3 kLooking{looking_left(), Eigen::Vector3d::Zero()};
@@ -54,7 +61,9 @@ TEST(Renderer, TextureIsProjectivelyExact) {
   for (std::size_t i = 0; i < halves.size(); ++i) halves[i] = i % 64 < 32 ? 40.0F : 220.0F;
   Environment e;
   const Eigen::Vector3d slant = Eigen::Vector3d(1.0, 0.8, 0.0).normalized();
-  const Surface wall{{-0.5, 1.5, 0.5}, slant, -Eigen::Vector3d::UnitZ(), 1.0, 1.0, std::make_shared<const Texture>(6, halves), {64, 64}, 1.0F};
+  const Surface wall{
+      {-0.5, 1.5, 0.5}, slant, -Eigen::Vector3d::UnitZ(), 1.0, 1.0, std::make_shared<const Texture>(6, halves),
+      {64, 64},         1.0F};
   e.surfaces.push_back(wall);
   const auto grey = render(e, camera, kLooking);
   const Eigen::Vector3d middle = wall.corner + 0.5 * slant;

@@ -178,6 +178,25 @@ TEST(Simulate, MostTagsAreReadOnBothPorts) {
   }
 }
 
+TEST(Simulate, DegenerateScenesAreWhatTheirNamesSay) {
+  for (const char* scene : {"purerotation", "standstill"}) {
+    const Truth truth = run(scene, 1).truth;
+    for (const TruePose& pose : truth.trajectory)
+      EXPECT_LT((pose.T_W_C.t - truth.trajectory[0].T_W_C.t).norm(), 1e-9) << scene;
+  }
+  const Truth turning = run("purerotation", 1).truth;
+  EXPECT_GT(turning.trajectory.front().T_W_C.R.angularDistance(turning.trajectory.back().T_W_C.R), 1.0);
+  for (const TruePose& pose : run("straight", 1).truth.trajectory) {
+    EXPECT_LT(pose.T_W_C.t.tail<2>().norm(), 1e-9);  // along x of W only
+  }
+  EXPECT_EQ(run("straight1ant", 1).truth.calibration.antennas.size(), 1U);
+  EXPECT_EQ(run("onetag", 1).truth.tags.size(), 1U);
+  EXPECT_EQ(run("tags300", 1).truth.tags.size(), 300U);
+  std::size_t left = 0;
+  for (const TrueTag& tag : run("stackedmirror", 1).truth.tags) left += tag.p_W_X_m.y() > 0 ? 1 : 0;
+  EXPECT_EQ(left, 10U);
+}
+
 TEST(Simulate, UnknownSceneOrClassListsTheKnownOnes) {
   const Sink sink = [](const Event&) -> Status { return Done{}; };
   Options options;

@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 class TruthFilesTest : public testing::Test {
  protected:
   void SetUp() override {
-    directory_ = (fs::path(testing::TempDir()) / ("rfmvo_truth_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))).string();
+    directory_ = (fs::path(testing::TempDir()) /
+                  ("rfmvo_truth_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name())))
+                     .string();
     fs::remove_all(directory_);
     Options options;
     options.scene = "wall";
