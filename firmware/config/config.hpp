@@ -43,6 +43,10 @@ struct JointConfig {
   double flip_probability = 0.003;        // of a pi flip of the reader
   double tag_range_max_m = 5.0;           // tags farther than this from the path are not looked for
   double scale_min_m = 0.05, scale_max_m = 20.0;  // metres per unit of V
+  double stale_after_s = 600.0;           // a tag not read for longer is STALE
+  double scale_sigma_max = 0.15;          // of ln(scale); above: NO_SCALE
+  double speed_min_m_s = 0.03, speed_max_m_s = 3.0;  // of the cart while it moves, mean
+  double time_offset_sigma_s = 0.005;     // camera against reader, after the clocks are matched
   double solve_interval_s = 1.0;          // a new solution this often, in event time
   double knot_spacing_m = 0.25;           // between the path's correction knots
   double located_sigma_max_m = 0.25;      // above: WEAK_GEOMETRY

@@ -1,0 +1,185 @@
+#include "vision/bundle_adjustment.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "base/assert.hpp"
+#include "vision/reprojection.hpp"
+
+namespace rfmvo {
+namespace {
+
+using Matrix63d = Eigen::Matrix<double, 6, 3>;
+
+constexpr double kInitialDamping = 1e-4;
+constexpr double kMinDamping = 1e-8;      // keeps a free gauge solvable
+constexpr double kMaxDamping = 1e4;
+constexpr double kCostDone = 1e-3;        // relative: a further step changes poses by less than their noise
+constexpr double kBehindCost_px2 = 1e4;
+
+class BundleSolver {
+ public:
+  BundleSolver(BundleProblem& problem, const BundleOptions& options) : problem_(problem), options_(options) {
+    for (const BundleView& view : problem.views) slot_.push_back(view.fixed ? -1 : free_++);
+    first_.assign(problem.points_V.size() + 1, 0);
+    for (const BundleObservation& o : problem.observations) ++first_[static_cast<std::size_t>(o.point) + 1];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    H_view_.resize(static_cast<std::size_t>(free_));
+    b_view_.resize(static_cast<std::size_t>(free_));
+    H_point_.resize(problem.points_V.size());
+    b_point_.resize(problem.points_V.size());
+    W_.resize(problem.observations.size());
+    step_view_.resize(6 * free_);
+    step_point_.resize(problem.points_V.size());
+  }
+
+  BundleReport run() {
+    BundleReport report;
+    report.initial_cost = report.final_cost = cost(problem_.views, problem_.points_V);
+    double damping = kInitialDamping;
+    bool fresh = false;
+    while (report.iterations < options_.max_iterations && damping < kMaxDamping) {
+      if (!fresh) linearise();
+      fresh = true;
+      ++report.iterations;
+      const double before = report.final_cost;
+      if (!step(damping) || !accept(report.final_cost)) {
+        damping *= 10.0;
+        continue;
+      }
+      fresh = false;
+      damping = std::max(0.1 * damping, kMinDamping);
+      if (before - report.final_cost < kCostDone * before) break;
+    }
+    return report;
+  }
+
+ private:
+  [[nodiscard]] double cost(const std::vector<BundleView>& views, const std::vector<Eigen::Vector3d>& points) const {
+    std::vector<Eigen::Matrix3d> R;
+    for (const BundleView& view : views) R.push_back(view.T_C_V.R_C_V.toRotationMatrix());
+    double sum = 0.0;
+    for (const BundleObservation& o : problem_.observations) {
+      const auto v = static_cast<std::size_t>(o.view);
+      const Eigen::Vector3d p_C = R[v] * points[static_cast<std::size_t>(o.point)] + views[v].T_C_V.t_C_V;
+      const Reprojection r = reproject(p_C, o.measured, options_.focal_px);
+      sum += r.in_front ? huber_cost(r.error_px.norm(), options_.huber_px) : kBehindCost_px2;
+    }
+    return sum;
+  }
+
+  void linearise() {
+    for (Matrix6d& H : H_view_) H.setZero();
+    for (Vector6d& b : b_view_) b.setZero();
+    std::vector<Eigen::Matrix3d> R;
+    for (const BundleView& view : problem_.views) R.push_back(view.T_C_V.R_C_V.toRotationMatrix());
+    for (std::size_t p = 0; p < problem_.points_V.size(); ++p) {
+      H_point_[p].setZero();
+      b_point_[p].setZero();
+      for (std::size_t k = first_[p]; k < first_[p + 1]; ++k) add_observation(k, p, R);
+    }
+  }
+
+  void add_observation(std::size_t k, std::size_t p, const std::vector<Eigen::Matrix3d>& R) {
+    const BundleObservation& o = problem_.observations[k];
+    const auto v = static_cast<std::size_t>(o.view);
+    const Eigen::Vector3d p_C = R[v] * problem_.points_V[p] + problem_.views[v].T_C_V.t_C_V;
+    const Reprojection r = reproject(p_C, o.measured, options_.focal_px);
+    W_[k].setZero();
+    if (!r.in_front) return;
+    const double w = huber_weight(r.error_px.norm(), options_.huber_px);
+    const Eigen::Matrix<double, 2, 3> J_point = r.d_camera_point * R[v];
+    H_point_[p].noalias() += w * J_point.transpose() * J_point;
+    b_point_[p].noalias() -= w * J_point.transpose() * r.error_px;
+    if (slot_[v] < 0) return;
+    const auto s = static_cast<std::size_t>(slot_[v]);
+    const Eigen::Matrix<double, 2, 6> J_pose = d_pose(r, p_C);
+    H_view_[s].noalias() += w * J_pose.transpose() * J_pose;
+    b_view_[s].noalias() -= w * J_pose.transpose() * r.error_px;
+    W_[k].noalias() = w * J_pose.transpose() * J_point;
+  }
+
+  // Solves for step_view_ and step_point_ at this damping; false if the system is not positive definite.
+  bool step(double damping) {
+    S_.setZero(6 * free_, 6 * free_);
+    Eigen::VectorXd b(6 * free_);
+    for (int s = 0; s < free_; ++s) {
+      Matrix6d H = H_view_[static_cast<std::size_t>(s)];
+      H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
+      S_.block<6, 6>(6 * s, 6 * s) = H;
+      b.segment<6>(6 * s) = b_view_[static_cast<std::size_t>(s)];
+    }
+    H_inverse_.resize(problem_.points_V.size());
+    for (std::size_t p = 0; p < problem_.points_V.size(); ++p) eliminate(p, damping, b);
+    if (free_ > 0) {
+      const Eigen::LLT<Eigen::MatrixXd> llt(S_);  // reads the lower triangle only
+      if (llt.info() != Eigen::Success) return false;
+      step_view_ = llt.solve(b);
+    }
+    for (std::size_t p = 0; p < problem_.points_V.size(); ++p) {
+      Eigen::Vector3d rest = b_point_[p];
+      for (std::size_t k = first_[p]; k < first_[p + 1]; ++k) {
+        const int s = slot_[static_cast<std::size_t>(problem_.observations[k].view)];
+        if (s >= 0) rest.noalias() -= W_[k].transpose() * step_view_.segment<6>(6 * s);
+      }
+      step_point_[p] = H_inverse_[p] * rest;
+    }
+    return true;
+  }
+
+  void eliminate(std::size_t p, double damping, Eigen::VectorXd& b) {
+    Eigen::Matrix3d H = H_point_[p];
+    H.diagonal() += damping * H.diagonal() + Eigen::Vector3d::Constant(1e-9);
+    H_inverse_[p] = H.inverse();
+    for (std::size_t i = first_[p]; i < first_[p + 1]; ++i) {
+      const int row = slot_[static_cast<std::size_t>(problem_.observations[i].view)];
+      if (row < 0) continue;
+      const Matrix63d Y = W_[i] * H_inverse_[p];
+      b.segment<6>(6 * row).noalias() -= Y * b_point_[p];
+      for (std::size_t j = first_[p]; j < first_[p + 1]; ++j) {
+        const int column = slot_[static_cast<std::size_t>(problem_.observations[j].view)];
+        if (column < 0 || column > row) continue;
+        S_.block<6, 6>(6 * row, 6 * column).noalias() -= Y.lazyProduct(W_[j].transpose());
+      }
+    }
+  }
+
+  bool accept(double& best_cost) {
+    std::vector<BundleView> views = problem_.views;
+    std::vector<Eigen::Vector3d> points = problem_.points_V;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (slot_[v] >= 0) views[v].T_C_V = moved(views[v].T_C_V, step_view_.segment<6>(6 * slot_[v]));
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) points[p] += step_point_[p];
+    const double now = cost(views, points);
+    if (!(now < best_cost)) return false;
+    problem_.views.swap(views);
+    problem_.points_V.swap(points);
+    best_cost = now;
+    return true;
+  }
+
+  BundleProblem& problem_;
+  const BundleOptions options_;
+  int free_ = 0;
+  std::vector<int> slot_;           // of each view among the free ones; -1 = fixed
+  std::vector<std::size_t> first_;  // observations of point p: first_[p] .. first_[p + 1]
+  std::vector<Matrix6d> H_view_;
+  std::vector<Vector6d> b_view_;
+  std::vector<Eigen::Matrix3d> H_point_, H_inverse_;
+  std::vector<Eigen::Vector3d> b_point_, step_point_;
+  std::vector<Matrix63d> W_;        // one per observation: view by point
+  Eigen::MatrixXd S_;
+  Eigen::VectorXd step_view_;
+};
+
+}  // namespace
+
+BundleReport adjust_bundle(BundleProblem& problem, const BundleOptions& options) {
+  RFMVO_ASSERT(std::is_sorted(problem.observations.begin(), problem.observations.end(),
+                              [](const auto& a, const auto& b) { return a.point < b.point; }));
+  return BundleSolver(problem, options).run();
+}
+
+}  // namespace rfmvo
