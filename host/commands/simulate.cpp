@@ -37,7 +37,10 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   CLI::Option* scene = command->add_option("--scene", options.scene, "What is simulated")
                            ->check(CLI::IsMember(simulate::scene_names()))
                            ->capture_default_str();
-  command->add_option("--images", options.images_dir, "Real images with metric truth (images/, times.txt, groundtruth.txt, calib.txt); tags and antennas are simulated")
+  command
+      ->add_option("--images", options.images_dir,
+                   "Real images with metric truth (images/, times.txt, groundtruth.txt, calib.txt); tags and antennas "
+                   "are simulated")
       ->check(CLI::ExistingDirectory)
       ->excludes(scene);
   command->add_option("--seed", options.seed, "Same seed, same bytes")->capture_default_str();

@@ -11,30 +11,44 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFrom_m = -2.6, kTo_m = 9.4;      // of the racks along x
+constexpr double kFrom_m = -2.6, kTo_m = 9.4;  // of the racks along x
 constexpr double kRackFront_m = 1.45, kRackDepth_m = 0.9;
-constexpr double kFarRack_m = -1.5;                // the other side of the aisle
+constexpr double kFarRack_m = -1.5;  // the other side of the aisle
 constexpr double kBay_m = 2.0;
 constexpr double kUpright_m = 0.09, kRackHeight_m = 2.9;
 constexpr std::array<double, 4> kShelves_m{0.12, 0.72, 1.32, 1.92};
-constexpr double kBeam_m = 0.09;                   // height of a shelf's beam
+constexpr double kBeam_m = 0.09;  // height of a shelf's beam
 constexpr double kCeiling_m = 4.2;
 
 // Amplitude reflection coefficients, averaged over polarisation and angle. Concrete (relative permittivity
 // 5..6, ITU-R P.2040) gives 0.3..0.45; sheet steel is 1, but shelves are perforated and half covered, a
 // rack's back is a wire mesh, the far rack is as much hole as metal, the roof is ribbed and far.
-constexpr double kFloorReflection = -0.4, kCeilingReflection = -0.3;
-constexpr double kShelfReflection = -0.35, kMeshReflection = -0.2, kFarRackReflection = -0.3;
+constexpr double kFloorReflection = -0.3, kCeilingReflection = -0.3;
+constexpr double kShelfReflection = -0.15, kMeshReflection = -0.1, kFarRackReflection = -0.3;
 // Physical optics of a strip 9 cm wide, cut into pieces of 16 cm (half a wavelength): 4 pi A^2 / lambda^2.
 constexpr double kUprightPiece_m = 0.16, kUprightCrossSection_m2 = 0.025;
-constexpr int kRandomScatterers = 60;              // goods and fittings
+constexpr int kRandomScatterers = 100;  // goods and fittings
 constexpr double kScattererMin_m2 = 0.002, kScattererMax_m2 = 0.02;
 
 void add_surfaces(Environment& e, Random& look) {
   const TexturePointer floor = concrete_texture(look), back = clutter_texture(look);
   const double length_m = kTo_m - kFrom_m;
-  e.surfaces.push_back({{kFrom_m, kRackFront_m + kRackDepth_m, 0.0}, Vector3d::UnitX(), -Vector3d::UnitY(), length_m, 3.5, floor, {420, 420}, 0.9F});
-  e.surfaces.push_back({{kFrom_m - 4, kRackFront_m + kRackDepth_m + 0.9, 4.0}, Vector3d::UnitX(), -Vector3d::UnitZ(), length_m + 8, 4.0, back, {190, 190}, 0.8F});
+  e.surfaces.push_back({{kFrom_m, kRackFront_m + kRackDepth_m, 0.0},
+                        Vector3d::UnitX(),
+                        -Vector3d::UnitY(),
+                        length_m,
+                        3.5,
+                        floor,
+                        {420, 420},
+                        0.9F});
+  e.surfaces.push_back({{kFrom_m - 4, kRackFront_m + kRackDepth_m + 0.9, 4.0},
+                        Vector3d::UnitX(),
+                        -Vector3d::UnitZ(),
+                        length_m + 8,
+                        4.0,
+                        back,
+                        {190, 190},
+                        0.8F});
 }
 
 void add_rack(Environment& e, Random& look) {
@@ -48,8 +62,10 @@ void add_rack(Environment& e, Random& look) {
     }
   }
   for (const double z_m : kShelves_m) {
-    add_box(e, {kFrom_m, kRackFront_m + 0.02, z_m - kBeam_m}, {kTo_m, kRackFront_m + 0.07, z_m}, {beam, beam, board, false});
-    add_box(e, {kFrom_m, kRackFront_m + 0.07, z_m - 0.03}, {kTo_m, kRackFront_m + kRackDepth_m, z_m - 0.005}, {beam, beam, board, false});
+    add_box(e, {kFrom_m, kRackFront_m + 0.02, z_m - kBeam_m}, {kTo_m, kRackFront_m + 0.07, z_m},
+            {beam, beam, board, false});
+    add_box(e, {kFrom_m, kRackFront_m + 0.07, z_m - 0.03}, {kTo_m, kRackFront_m + kRackDepth_m, z_m - 0.005},
+            {beam, beam, board, false});
   }
 }
 
@@ -58,7 +74,8 @@ std::vector<Carton> add_cartons(Environment& e, Random& look, Random& random) {
   for (const double shelf_m : kShelves_m) {
     double x_m = kFrom_m + random.uniform(0.1, 0.3);
     while (x_m < kTo_m - 0.7) {
-      const double width_m = random.uniform(0.28, 0.6), depth_m = random.uniform(0.3, 0.5), height_m = random.uniform(0.22, 0.45);
+      const double width_m = random.uniform(0.28, 0.6), depth_m = random.uniform(0.3, 0.5),
+                   height_m = random.uniform(0.22, 0.45);
       const double front_m = kRackFront_m + random.uniform(0.03, 0.28);
       // Cartons do not stand in the uprights.
       const double bay_x_m = x_m - kFrom_m - kBay_m * std::floor((x_m - kFrom_m) / kBay_m);
@@ -70,7 +87,8 @@ std::vector<Carton> add_cartons(Environment& e, Random& look, Random& random) {
       x_m += width_m + random.uniform(0.02, 0.25);
     }
   }
-  std::stable_sort(cartons.begin(), cartons.end(), [](const Carton& a, const Carton& b) { return a.low.x() < b.low.x(); });
+  std::stable_sort(cartons.begin(), cartons.end(),
+                   [](const Carton& a, const Carton& b) { return a.low.x() < b.low.x(); });
   return cartons;
 }
 
@@ -83,8 +101,14 @@ void add_reflectors(Environment& e, Random& random) {
   for (const double shelf_m : kShelves_m) {
     e.reflectors.push_back({{mid_x_m, rack_mid_m, shelf_m}, z, x, half_m, 0.5 * kRackDepth_m, kShelfReflection});
   }
-  e.reflectors.push_back({{mid_x_m, kRackFront_m + kRackDepth_m, 0.5 * kRackHeight_m}, y, x, half_m, 0.5 * kRackHeight_m, kMeshReflection});
-  e.reflectors.push_back({{mid_x_m, kFarRack_m, 0.5 * kRackHeight_m}, y, x, half_m, 0.5 * kRackHeight_m, kFarRackReflection});
+  e.reflectors.push_back({{mid_x_m, kRackFront_m + kRackDepth_m, 0.5 * kRackHeight_m},
+                          y,
+                          x,
+                          half_m,
+                          0.5 * kRackHeight_m,
+                          kMeshReflection});
+  e.reflectors.push_back(
+      {{mid_x_m, kFarRack_m, 0.5 * kRackHeight_m}, y, x, half_m, 0.5 * kRackHeight_m, kFarRackReflection});
   for (int n = 0; n < kRandomScatterers; ++n) {
     const double x_m = random.uniform(kFrom_m, kTo_m), z_m = random.uniform(0.1, 2.3);
     const double y_m = kRackFront_m + random.uniform(0.1, kRackDepth_m);

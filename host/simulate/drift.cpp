@@ -34,8 +34,7 @@ Eigen::Vector3d normal3(Random& random) {
 Eigen::Matrix<double, 6, 6> motion_covariance(const DriftClass& c, double step_m, double gamma) {
   const double rotation = std::pow(c.rotation_walk_rad_per_sqrt_m, 2) * step_m +
                           std::pow(c.rotation_bias_rad_per_m * step_m, 2) + std::pow(kRotationFloor_rad, 2);
-  // The white part enters a difference of two poses twice. e is common to many steps: its own spread over
-  // one metre stands for it.
+  // The white part enters the difference of two poses twice; e counts with its spread after one metre.
   const double white = std::max(c.white_m, kWhiteFloor_m);
   const double translation = 2.0 * white * white + std::pow(c.scale_walk_per_sqrt_m * step_m, 2);
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -67,12 +66,12 @@ DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std:
   const double bias_sign = scale_random.uniform() < 0.5 ? -1.0 : 1.0;
   result.scale_m_per_unit = gamma;
 
-  UnscaledPose pose;                      // without n
-  double scale_error = 0.0;               // e
+  UnscaledPose pose;         // without n
+  double scale_error = 0.0;  // e
   Eigen::Quaterniond R_theta = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond R_V0_W = truth.front().T_W_C.R.conjugate();  // V0: V without drift
   for (std::size_t k = 0; k < truth.size(); ++k) {
     double step_m = 0.0;
-    const Eigen::Quaterniond R_V0_W = truth.front().T_W_C.R.conjugate();
     if (k > 0) {
       const Eigen::Vector3d step_V0 = R_V0_W * (truth[k].T_W_C.t - truth[k - 1].T_W_C.t);
       step_m = step_V0.norm();

@@ -15,10 +15,10 @@ namespace rfmvo::simulate {
 // travelled, n is white. Measured against real monocular odometry (fr2_desk: 0.10 % rms over 6 m).
 struct DriftClass {
   std::string name;
-  double white_m = 0.0;                      // n, per axis and pose
-  double scale_walk_per_sqrt_m = 0.0;        // e
-  double rotation_walk_rad_per_sqrt_m = 0.0; // theta, each of three axes
-  double rotation_bias_rad_per_m = 0.0;      // theta about the camera's vertical, either sign: what a wrong distortion does
+  double white_m = 0.0;                       // n, per axis and pose
+  double scale_walk_per_sqrt_m = 0.0;         // e
+  double rotation_walk_rad_per_sqrt_m = 0.0;  // theta, each of three axes
+  double rotation_bias_rad_per_m = 0.0;  // theta about the camera's vertical, either sign: what a wrong distortion does
 };
 
 [[nodiscard]] std::optional<DriftClass> find_drift_class(const std::string& name);

@@ -7,8 +7,8 @@ constexpr double kTiledTexels_per_m = 320.0;
 
 using Eigen::Vector3d;
 
-void add_face(Environment& environment, const Vector3d& corner, const Vector3d& right, const Vector3d& down, double width_m,
-              double height_m, const TexturePointer& texture, bool stretch, float brightness) {
+void add_face(Environment& environment, const Vector3d& corner, const Vector3d& right, const Vector3d& down,
+              double width_m, double height_m, const TexturePointer& texture, bool stretch, float brightness) {
   Surface s{corner, right, down, width_m, height_m, texture, {kTiledTexels_per_m, kTiledTexels_per_m}, brightness};
   const double side = static_cast<double>(1 << texture->bits());
   if (stretch) s.texels_per_m = {side / width_m, side / height_m};
@@ -28,7 +28,8 @@ void add_box(Environment& e, const Vector3d& low, const Vector3d& high, const Bo
   add_face(e, low, x, y, size.x(), size.y(), t.top, t.stretch, 0.45F);
 }
 
-void add_poster(Environment& e, const Vector3d& corner, double width_m, double height_m, const TexturePointer& texture) {
+void add_poster(Environment& e, const Vector3d& corner, double width_m, double height_m,
+                const TexturePointer& texture) {
   add_face(e, corner, Vector3d::UnitX(), -Vector3d::UnitZ(), width_m, height_m, texture, true, 1.0F);
 }
 

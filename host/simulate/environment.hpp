@@ -48,9 +48,11 @@ struct BoxTextures {
   TexturePointer front, side, top;
   bool stretch = true;
 };
-void add_box(Environment& environment, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const BoxTextures& textures);
+void add_box(Environment& environment, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+             const BoxTextures& textures);
 
 // A rectangle in the plane y = const that looks towards -y, upper left corner (x, y, z).
-void add_poster(Environment& environment, const Eigen::Vector3d& corner, double width_m, double height_m, const TexturePointer& texture);
+void add_poster(Environment& environment, const Eigen::Vector3d& corner, double width_m, double height_m,
+                const TexturePointer& texture);
 
 }  // namespace rfmvo::simulate

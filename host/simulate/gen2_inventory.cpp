@@ -13,16 +13,21 @@ namespace {
 
 // Chosen so that the rates come out as measured on an R420 (DESIGN 2.8): 70/s for one tag, 79/s for many
 // (slotted ALOHA reads in 37 % of the slots, the rest are empty or collide).
-constexpr double kEmptySlot_s = 0.0012, kCollidedSlot_s = 0.004, kReadSlot_s = 0.0085;
-constexpr double kRoundOverhead_s = 0.0055;  // Select, Query
+constexpr double kEmptySlot_s = 0.0006, kCollidedSlot_s = 0.0025, kReadSlot_s = 0.0080;
+constexpr double kRoundOverhead_s = 0.0060;  // Select, Query
 constexpr double kPortSwitch_s = 0.002;
-constexpr double kDwell_s = 0.1;             // at least this long on one antenna
+constexpr double kDwell_s = 0.1;  // at least this long on one antenna
 constexpr int kMaxQ = 8;
 
 class Inventory {
  public:
   Inventory(const Scene& scene, const RadioLink& link, std::uint64_t seed)
-      : scene_(scene), link_(link), random_(seed, "inventory"), channels_(seed), flag_(scene.tags.size(), 0), t_s_(scene.start_s()) {}
+      : scene_(scene),
+        link_(link),
+        random_(seed, "inventory"),
+        channels_(seed),
+        flag_(scene.tags.size(), 0),
+        t_s_(scene.start_s()) {}
 
   std::vector<Singulation> run() {
     double dwell_end_s = t_s_ + kDwell_s;

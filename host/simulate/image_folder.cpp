@@ -50,7 +50,8 @@ Status read_poses(const std::string& directory, std::vector<StampedPose>& truth)
     StampedPose pose;
     Eigen::Vector3d& t = pose.T_G_C.t;
     double qx = 0, qy = 0, qz = 0, qw = 0;
-    if (!(words >> pose.t_s >> t.x() >> t.y() >> t.z() >> qx >> qy >> qz >> qw)) return "expected: t tx ty tz qx qy qz qw";
+    if (!(words >> pose.t_s >> t.x() >> t.y() >> t.z() >> qx >> qy >> qz >> qw))
+      return "expected: t tx ty tz qx qy qz qw";
     const Eigen::Quaterniond q(qw, qx, qy, qz);
     if (!std::isfinite(pose.t_s) || !t.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) {
       return "not a rigid pose: the quaternion's norm must be 1";
@@ -66,10 +67,12 @@ Status read_camera(const std::string& directory, CameraModel& camera) {
   bool found = false;
   const Status status = each_line(directory + "/calib.txt", [&](std::istringstream& words) -> std::string {
     std::string model;
-    if (!(words >> camera.fx_px >> camera.fy_px >> camera.cx_px >> camera.cy_px >> camera.width_px >> camera.height_px >> model)) {
+    if (!(words >> camera.fx_px >> camera.fy_px >> camera.cx_px >> camera.cy_px >> camera.width_px >>
+          camera.height_px >> model)) {
       return "expected: fx fy cx cy width height model d0..";
     }
-    if (camera.fx_px <= 0 || camera.fy_px <= 0 || camera.width_px <= 0 || camera.height_px <= 0) return "must be positive";
+    if (camera.fx_px <= 0 || camera.fy_px <= 0 || camera.width_px <= 0 || camera.height_px <= 0)
+      return "must be positive";
     if (model != "none" && model != "radtan") return "unknown distortion model '" + model + "' (none | radtan)";
     for (std::size_t i = 0; model == "radtan" && i < camera.radtan.size() && words >> camera.radtan[i]; ++i) {
     }
@@ -88,12 +91,14 @@ Result<ImageFolder> read_image_folder(const std::string& directory) {
   if (Status s = read_camera(directory, folder.camera); !s.ok()) return s.error();
   if (Status s = read_poses(directory, folder.truth); !s.ok()) return s.error();
   if (Status s = read_times(directory, folder.images); !s.ok()) return s.error();
-  if (folder.truth.size() < 2) return Error{ErrorCode::kMalformed, "fewer than two poses", directory + "/groundtruth.txt"};
+  if (folder.truth.size() < 2)
+    return Error{ErrorCode::kMalformed, "fewer than two poses", directory + "/groundtruth.txt"};
   // Frames without truth cannot carry simulated reads.
   const double first_s = folder.truth.front().t_s, last_s = folder.truth.back().t_s;
   std::erase_if(folder.images, [&](const ImageEntry& e) { return e.t_s < first_s || e.t_s > last_s; });
   if (folder.images.size() < 2) {
-    return Error{ErrorCode::kMalformed, "fewer than two images in the time span of groundtruth.txt", directory + "/times.txt"};
+    return Error{ErrorCode::kMalformed, "fewer than two images in the time span of groundtruth.txt",
+                 directory + "/times.txt"};
   }
   return folder;
 }
@@ -101,14 +106,15 @@ Result<ImageFolder> read_image_folder(const std::string& directory) {
 Result<std::shared_ptr<const std::vector<std::uint8_t>>> read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorCode::kUnreadable, "image cannot be opened", path};
-  auto bytes = std::make_shared<std::vector<std::uint8_t>>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  auto bytes = std::make_shared<std::vector<std::uint8_t>>(std::istreambuf_iterator<char>(file),
+                                                           std::istreambuf_iterator<char>());
   if (file.bad() || bytes->empty()) return Error{ErrorCode::kUnreadable, "image cannot be read", path};
   return std::shared_ptr<const std::vector<std::uint8_t>>(std::move(bytes));
 }
 
 Rigid3 pose_at(const std::vector<StampedPose>& truth, double t_s) {
-  const auto after = std::upper_bound(truth.begin(), truth.end(), t_s,
-                                      [](double t, const StampedPose& pose) { return t < pose.t_s; });
+  const auto after =
+      std::upper_bound(truth.begin(), truth.end(), t_s, [](double t, const StampedPose& pose) { return t < pose.t_s; });
   if (after == truth.begin()) return truth.front().T_G_C;
   if (after == truth.end()) return truth.back().T_G_C;
   const StampedPose& a = *(after - 1);

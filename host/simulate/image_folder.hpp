@@ -25,8 +25,8 @@ struct StampedPose {
 
 struct ImageFolder {
   CameraModel camera;
-  std::vector<ImageEntry> images;   // increasing times, all inside the truth's time span
-  std::vector<StampedPose> truth;   // increasing times
+  std::vector<ImageEntry> images;  // increasing times, all inside the truth's time span
+  std::vector<StampedPose> truth;  // increasing times
 };
 
 // Every line is checked and every image must exist; errors name file and line.

@@ -1,5 +1,8 @@
 // The backscatter channel by image sources: direct path, one mirror image per flat reflector, one path per
-// scatterer. The one-way field h is their complex sum; the same way back gives h^2.
+// scatterer. The one-way field h is their complex sum; the same way back gives h^2. Polarisation, double
+// bounces and shadowing are left out. In the aisle the phase then differs from the line of sight by 0.27..0.29 rad
+// rms (six seeds) after the mean of each (tag, antenna); it decorrelates over a longer way than in the
+// recordings of one antenna 0.5 m from its tags: 0.88 / 0.75 / 0.55 / 0.35 at 4 / 8 / 16 / 30 cm.
 #include <cmath>
 #include <complex>
 
@@ -31,7 +34,8 @@ struct Ends {
 double pattern(const Ends& ends, const Vector3d& out, const Vector3d& in) {
   const double off_boresight = (out - ends.antenna).normalized().dot(ends.boresight);
   const double at_tag = std::max(0.0, (in - ends.tag).normalized().dot(ends.tag_normal));
-  return std::pow(10.0, patch_gain_db(off_boresight) / 20.0) * std::sqrt(kTagBackPower + (1.0 - kTagBackPower) * at_tag * at_tag);
+  return std::pow(10.0, patch_gain_db(off_boresight) / 20.0) *
+         std::sqrt(kTagBackPower + (1.0 - kTagBackPower) * at_tag * at_tag);
 }
 
 // 1 well inside the rectangle, 0 well outside, smooth over a quarter wavelength: what diffraction does.
@@ -43,7 +47,9 @@ double inside(const Reflector& r, const Vector3d& p) {
   return 1.0 / (1.0 + std::exp(-std::min(along, across) / kSoftEdge_m));
 }
 
-Complex ray(double amplitude, double length_m, double wave_number) { return std::polar(amplitude, -wave_number * length_m); }
+Complex ray(double amplitude, double length_m, double wave_number) {
+  return std::polar(amplitude, -wave_number * length_m);
+}
 
 Complex reflection(const Ends& ends, const Reflector& r, double wave_number) {
   const double antenna_height = (ends.antenna - r.centre).dot(r.normal);
@@ -82,7 +88,8 @@ RadioLink make_physical_link(const Scene& scene) {
     const double one_way_db = 20.0 * std::log10(std::abs(h));
     LinkState link;
     link.rssi_dbm = kRssiAtOneMetre_dbm + 2.0 * one_way_db;
-    link.readable = kTagPowerAtOneMetre_dbm + one_way_db > kTagSensitivity_dbm && link.rssi_dbm > kReaderSensitivity_dbm;
+    link.readable =
+        kTagPowerAtOneMetre_dbm + one_way_db > kTagSensitivity_dbm && link.rssi_dbm > kReaderSensitivity_dbm;
     // Phase of a tone in noise: sigma^2 = 1 / (2 SNR).
     const double noise_to_signal = std::pow(10.0, (kPhaseNoiseFloor_dbm - link.rssi_dbm) / 10.0);
     link.white_sigma_rad = std::sqrt(kPhaseFloor_rad * kPhaseFloor_rad + 0.5 * noise_to_signal);

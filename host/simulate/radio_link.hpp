@@ -9,7 +9,7 @@
 namespace rfmvo::simulate {
 
 struct LinkState {
-  bool readable = false;       // enough power at the tag and back at the reader
+  bool readable = false;  // enough power at the tag and back at the reader
   double rssi_dbm = -120.0;
   double phase_rad = 0.0;      // of the round trip in space, not wrapped, grows with distance
   double white_sigma_rad = 0;  // of the reader's phase measurement at this strength
@@ -32,7 +32,7 @@ using RadioLink = std::function<LinkState(double t_s, std::size_t antenna, std::
 // Line of sight between antenna and tag.
 struct Sight {
   double distance_m = 0.0;
-  double cosine = 0.0;          // off the antenna's boresight
+  double cosine = 0.0;  // off the antenna's boresight
   Eigen::Vector3d p_S_A_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d boresight_S = Eigen::Vector3d::UnitX();
 };

@@ -15,10 +15,10 @@ constexpr double kPortLengthMin_m = 5.0, kPortLengthMax_m = 10.0;
 // pi flips of the reader come in bursts: mean 5 reads of one (tag, port), 0.3 % of all reads.
 constexpr double kFlipStay = 0.8;
 constexpr double kFlipEnter = 0.003 / 0.997 * (1.0 - kFlipStay);
-constexpr std::int64_t kPhaseCounts = 4096;               // Impinj: 12 bits a turn,
-constexpr std::int64_t kPhaseStep = 2;                    // of which only even counts occur
+constexpr std::int64_t kPhaseCounts = 4096;  // Impinj: 12 bits a turn,
+constexpr std::int64_t kPhaseStep = 2;       // of which only even counts occur
 constexpr std::int64_t kTurnPerCount = 65536 / kPhaseCounts;
-constexpr Duration kReaderClockOffset{-800'000'000};      // the reader's clock against the device's
+constexpr Duration kReaderClockOffset{-800'000'000};  // the reader's clock against the device's
 
 // 12 bits, even: what an R420 can say. The simulator's own conversion, not the estimator's.
 std::uint16_t quantise(double phase_rad) {

@@ -12,10 +12,10 @@ namespace rfmvo::simulate {
 namespace {
 
 constexpr double kNear_m = 0.05;
-constexpr double kLensBlur_px = 0.7;    // 1 sigma; also softens the rasteriser's stairs
-constexpr double kNoise_grey = 1.5;     // 1 sigma, of 8 bits
+constexpr double kLensBlur_px = 0.7;  // 1 sigma; also softens the rasteriser's stairs
+constexpr double kNoise_grey = 1.5;   // 1 sigma, of 8 bits
 constexpr int kJpegQuality = 90;
-constexpr float kEmpty = 40.0F;         // where nothing stands
+constexpr float kEmpty = 40.0F;  // where nothing stands
 
 // A surface in the camera frame with what each pixel needs: 1/z, u and v are rational in the ray (x, y, 1).
 struct Facing {
@@ -23,9 +23,9 @@ struct Facing {
   std::vector<Eigen::Vector3d> outline_C;  // clipped at the near plane
   Eigen::Vector3d normal_over_d;           // 1/z = normal_over_d . ray
   Eigen::Vector3d right_C, down_C;
-  double right_0 = 0, down_0 = 0;          // u = z * right . ray - right_0
+  double right_0 = 0, down_0 = 0;  // u = z * right . ray - right_0
   double plane_distance_m = 0;
-  double depth_m = 0;                      // of the centre, for the drawing order
+  double depth_m = 0;  // of the centre, for the drawing order
 };
 
 std::vector<Eigen::Vector3d> clip_near(const std::array<Eigen::Vector3d, 4>& corners) {
@@ -136,12 +136,14 @@ std::vector<std::uint8_t> render(const Environment& environment, const CameraMod
     if (face(surface, T_C_S, f)) facing.push_back(std::move(f));
   }
   // Near ones first: what they hide is then never textured.
-  std::stable_sort(facing.begin(), facing.end(), [](const Facing& a, const Facing& b) { return a.depth_m < b.depth_m; });
+  std::stable_sort(facing.begin(), facing.end(),
+                   [](const Facing& a, const Facing& b) { return a.depth_m < b.depth_m; });
   const std::size_t pixels = static_cast<std::size_t>(camera.width_px) * camera.height_px;
   Target target{camera, std::vector<float>(pixels, kEmpty), std::vector<float>(pixels, 0.0F)};
   for (const Facing& f : facing) draw(f, target);
   std::vector<std::uint8_t> grey(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) grey[i] = static_cast<std::uint8_t>(std::clamp(target.grey[i] + 0.5F, 0.0F, 255.0F));
+  for (std::size_t i = 0; i < pixels; ++i)
+    grey[i] = static_cast<std::uint8_t>(std::clamp(target.grey[i] + 0.5F, 0.0F, 255.0F));
   return grey;
 }
 
@@ -156,7 +158,8 @@ void add_optics(std::vector<std::uint8_t>& grey, const CameraModel& camera, Rand
   }
 }
 
-std::shared_ptr<const std::vector<std::uint8_t>> encode_jpeg(const std::vector<std::uint8_t>& grey, const CameraModel& camera) {
+std::shared_ptr<const std::vector<std::uint8_t>> encode_jpeg(const std::vector<std::uint8_t>& grey,
+                                                             const CameraModel& camera) {
   auto bytes = std::make_shared<std::vector<std::uint8_t>>();
   std::vector<std::uint8_t> copy = grey;
   const bool done = cv::imencode(".jpg", as_mat(copy, camera), *bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});

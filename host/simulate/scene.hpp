@@ -24,14 +24,14 @@ struct SceneTag {
 
 struct Scene {
   std::string name;
-  std::vector<double> frame_times_s;          // since the run's epoch, increasing
-  std::function<Rigid3(double)> T_S_C;        // camera pose at a time (s), continuous
-  Calibration calibration;                    // the true one
+  std::vector<double> frame_times_s;    // since the run's epoch, increasing
+  std::function<Rigid3(double)> T_S_C;  // camera pose at a time (s), continuous
+  Calibration calibration;              // the true one
   std::vector<SceneTag> tags;
-  double structured_sigma_rad = 0.3;          // of the statistical radio link
-  double capture_sigma = 1.0;                 // spread of ln(chance to win a slot) between tags: makes gaps heavy-tailed
-  std::shared_ptr<const Environment> environment;  // null: statistical link, no rendered frames
-  bool physical_link = false;                 // phase and power from the environment's reflections
+  double structured_sigma_rad = 0.3;  // of the statistical radio link
+  double capture_sigma = 1.0;         // spread of ln(chance to win a slot) between tags: makes gaps heavy-tailed
+  std::shared_ptr<const Environment> environment;   // null: statistical link, no rendered frames
+  bool physical_link = false;                       // phase and power from the environment's reflections
   std::function<Result<Frame>(std::size_t)> frame;  // k-th frame without its time; empty: the scene has no frames
 
   [[nodiscard]] double start_s() const { return frame_times_s.front(); }

@@ -15,10 +15,10 @@ namespace {
 constexpr double kSpeed_m_s = 0.5;
 constexpr double kStandStill_s = 0.3;  // before the drive
 constexpr double kSpeedUp_s = 1.0;
-constexpr double kDuration_s = 13.0;   // about 6 m
+constexpr double kDuration_s = 13.0;  // about 6 m
 constexpr double kCameraHeight_m = 1.05;
 constexpr std::size_t kTags = 18;
-constexpr double kTagEdge_m = 0.06;    // from a carton's edge
+constexpr double kTagEdge_m = 0.06;  // from a carton's edge
 
 double travelled_m(double t_s) {
   const double t = std::max(0.0, t_s - kStandStill_s);
@@ -47,7 +47,7 @@ Calibration calibration() {
   c.antennas[0].port = 1;
   c.antennas[0].p_C_A_m = {-0.18, -0.40, 0.03};  // high, towards the rear
   c.antennas[1].port = 2;
-  c.antennas[1].p_C_A_m = {0.18, 0.40, 0.03};    // low, towards the front
+  c.antennas[1].p_C_A_m = {0.18, 0.40, 0.03};  // low, towards the front
   return c;
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kTags = 8;
 constexpr double kNear_m = 1.2, kFar_m = 2.2, kAcross_m = 0.8;  // tags in front of the path
-constexpr double kBeamCosine = 0.574;        // 55 degrees: well inside the beam
-constexpr double kReadableShare = 0.4;       // of the time, by both antennas
+constexpr double kBeamCosine = 0.574;                           // 55 degrees: well inside the beam
+constexpr double kReadableShare = 0.4;                          // of the time, by both antennas
 constexpr int kAttempts = 300;
 constexpr double kProbe_s = 0.1;
 

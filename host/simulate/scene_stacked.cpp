@@ -11,10 +11,9 @@ namespace {
 
 constexpr double kLength_m = 4.0;
 constexpr double kSpeed_m_s = 0.5;
-constexpr double kWeave_m = 0.2;         // amplitude, one period over the pass
-constexpr double kHalfStack_m = 0.5;     // antennas above and below the camera
-constexpr double kTurnRate_rad_s = 0.15; // purerotation
-constexpr double kMountForward_m = 0.3;  // purerotation: the camera sits ahead of the turning point
+constexpr double kWeave_m = 0.2;          // amplitude, one period over the pass
+constexpr double kHalfStack_m = 0.5;      // antennas above and below the camera
+constexpr double kTurnRate_rad_s = 0.15;  // purerotation
 
 struct Shape {
   double weave_m = kWeave_m;
@@ -42,7 +41,7 @@ Rigid3 body_pose(const Shape& shape, double t_s) {
   const double mid_x_m = 0.5 * kLength_m;
   if (shape.motion == Shape::kStand) return cart_pose({mid_x_m, 0, 0}, 1, 0);
   if (shape.motion == Shape::kTurn) {
-    // Swings to both sides of the shelf's normal, so that tags stay in the beam.
+    // About the camera itself, to both sides of the shelf's normal: neither camera nor antennas travel.
     const double half_time_s = 0.5 * kLength_m / kSpeed_m_s;
     const double yaw_rad = kTurnRate_rad_s * (t_s - half_time_s);
     return cart_pose({mid_x_m, 0, 0}, std::cos(yaw_rad), std::sin(yaw_rad));
@@ -56,7 +55,6 @@ Rigid3 body_pose(const Shape& shape, double t_s) {
 Calibration calibration_of(const Shape& shape) {
   Calibration c;
   c.T_B_C.R = shape.forward_looking ? looking_forward() : looking_left();
-  if (shape.motion == Shape::kTurn) c.T_B_C.t.x() = kMountForward_m;
   for (std::size_t a = 0; a < shape.antennas; ++a) {
     AntennaCalibration antenna;
     antenna.port = static_cast<std::uint8_t>(a + 1);

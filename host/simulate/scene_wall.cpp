@@ -28,8 +28,8 @@ double travelled_m(double t_s) {
 Rigid3 body_pose(double t_s) {
   const double x_m = travelled_m(t_s);
   const double slow_rad_m = kTwoPi / 4.0, fast_rad_m = kTwoPi / 1.7;
-  const double y_m = 0.28 * std::sin(slow_rad_m * x_m) + 0.05 * std::sin(fast_rad_m * x_m);
-  const double slope = 0.28 * slow_rad_m * std::cos(slow_rad_m * x_m) + 0.05 * fast_rad_m * std::cos(fast_rad_m * x_m);
+  const double y_m = 0.28 * std::sin(slow_rad_m * x_m) + 0.02 * std::sin(fast_rad_m * x_m);
+  const double slope = 0.28 * slow_rad_m * std::cos(slow_rad_m * x_m) + 0.02 * fast_rad_m * std::cos(fast_rad_m * x_m);
   return cart_pose({x_m, y_m, 0.0}, 1.0, slope);
 }
 
@@ -65,9 +65,11 @@ void add_tags(Scene& scene, Environment& room, Random& random) {
 
 void furnish(Environment& room, Random& random) {
   const TexturePointer plaster = plaster_texture(random), floor = concrete_texture(random);
-  Surface wall{{-3.0, kWallY_m, 2.8}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ(), 11.0, 2.8, plaster, {330, 330}, 1.0F};
+  Surface wall{
+      {-3.0, kWallY_m, 2.8}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ(), 11.0, 2.8, plaster, {330, 330}, 1.0F};
   room.surfaces.push_back(wall);
-  Surface ground{{-3.0, kWallY_m, 0.0}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY(), 11.0, 4.0, floor, {400, 400}, 0.9F};
+  Surface ground{
+      {-3.0, kWallY_m, 0.0}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY(), 11.0, 4.0, floor, {400, 400}, 0.9F};
   room.surfaces.push_back(ground);
   const TexturePointer checks = checkerboard_texture(kSquares);
   for (const Board& board : kBoards) {

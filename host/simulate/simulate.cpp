@@ -81,7 +81,8 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   if (!drift_class) {
     std::string known;
     for (const std::string& name : vo_class_names()) known += (known.empty() ? "" : ", ") + name;
-    return Error{ErrorCode::kUnknownKey, "unknown odometry class '" + options.vo_class + "'; known: " + known, "--vo-class"};
+    return Error{ErrorCode::kUnknownKey, "unknown odometry class '" + options.vo_class + "'; known: " + known,
+                 "--vo-class"};
   }
   Result<Scene> made = make_scene(options);
   if (!made.ok()) return made.error();

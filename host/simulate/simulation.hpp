@@ -14,8 +14,8 @@
 namespace rfmvo::simulate {
 
 struct Options {
-  std::string scene = "aisle";       // one of scene_names()
-  std::string images_dir;            // real image sequence with metric truth; empty = synthetic
+  std::string scene = "aisle";  // one of scene_names()
+  std::string images_dir;       // real image sequence with metric truth; empty = synthetic
   std::uint64_t seed = 1;
   std::string vo_class = "NOMINAL";  // drift of the CameraPose events: PERFECT | BEST | NOMINAL | DEGRADED | BAD
   bool frames = true;                // false: no Frame events (fast; for replay from poses)

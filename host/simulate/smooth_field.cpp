@@ -8,9 +8,10 @@
 namespace rfmvo::simulate {
 namespace {
 
-constexpr double kGridPerLength = 8.0;    // grid steps per correlation length: linear interpolation loses < 0.4 % of the variance
-constexpr double kKernelLengths = 3.0;    // the kernel is cut where it is exp(-9)
-constexpr double kArcStep_s = 0.005;      // 5 mm at 1 m/s; a straight chord there is exact enough
+constexpr double kGridPerLength =
+    8.0;  // grid steps per correlation length: linear interpolation loses < 0.4 % of the variance
+constexpr double kKernelLengths = 3.0;  // the kernel is cut where it is exp(-9)
+constexpr double kArcStep_s = 0.005;    // 5 mm at 1 m/s; a straight chord there is exact enough
 
 // Linear interpolation in a table over x = 0, 1, ..., clamped at its ends.
 double interpolate_table(const std::vector<double>& table, double x) {

@@ -159,7 +159,8 @@ TexturePointer steel_texture(Random& random) {
   for (int hole = 0; hole < 10; ++hole) sheet.disc(0.5, (hole + 0.5) / 10, 0.02, 15.0F);
   for (int i = 0; i < 6; ++i) {
     const double x = random.uniform(0.0, 0.85), y = random.uniform(0.0, 0.9);
-    sheet.rectangle(x, y, x + random.uniform(0.05, 0.15), y + random.uniform(0.03, 0.1), static_cast<float>(random.uniform(120, 230)));
+    sheet.rectangle(x, y, x + random.uniform(0.05, 0.15), y + random.uniform(0.03, 0.1),
+                    static_cast<float>(random.uniform(120, 230)));
   }
   sheet.noise(128, 6.0F, random);
   return sheet.texture();

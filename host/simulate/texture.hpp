@@ -24,12 +24,12 @@ class Texture {
 
 using TexturePointer = std::shared_ptr<const Texture>;
 
-[[nodiscard]] TexturePointer cardboard_texture(Random& random);     // tape, label with bar code, stamps
-[[nodiscard]] TexturePointer concrete_texture(Random& random);      // floor: stains, chips
-[[nodiscard]] TexturePointer steel_texture(Random& random);         // racks: holes, stickers
-[[nodiscard]] TexturePointer clutter_texture(Random& random);       // what stands behind a shelf
-[[nodiscard]] TexturePointer plaster_texture(Random& random);       // a painted wall with marks
-[[nodiscard]] TexturePointer checkerboard_texture(int squares);     // squares a side
-[[nodiscard]] TexturePointer label_texture(Random& random);         // an RFID inlay
+[[nodiscard]] TexturePointer cardboard_texture(Random& random);  // tape, label with bar code, stamps
+[[nodiscard]] TexturePointer concrete_texture(Random& random);   // floor: stains, chips
+[[nodiscard]] TexturePointer steel_texture(Random& random);      // racks: holes, stickers
+[[nodiscard]] TexturePointer clutter_texture(Random& random);    // what stands behind a shelf
+[[nodiscard]] TexturePointer plaster_texture(Random& random);    // a painted wall with marks
+[[nodiscard]] TexturePointer checkerboard_texture(int squares);  // squares a side
+[[nodiscard]] TexturePointer label_texture(Random& random);      // an RFID inlay
 
 }  // namespace rfmvo::simulate

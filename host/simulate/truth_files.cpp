@@ -57,7 +57,8 @@ bool parse_seconds(const std::string& text, DeviceTime& time) {
   const std::size_t end = dot == std::string::npos ? text.size() : dot;
   const auto a = std::from_chars(text.data(), text.data() + end, whole);
   const auto b = std::from_chars(fraction.data(), fraction.data() + fraction.size(), part);
-  if (a.ec != std::errc{} || a.ptr != text.data() + end || b.ec != std::errc{} || b.ptr != fraction.data() + 9) return false;
+  if (a.ec != std::errc{} || a.ptr != text.data() + end || b.ec != std::errc{} || b.ptr != fraction.data() + 9)
+    return false;
   if (whole < 0 || whole > 9'000'000'000) return false;
   time.ns = whole * 1'000'000'000 + part;
   return true;
@@ -66,7 +67,8 @@ bool parse_seconds(const std::string& text, DeviceTime& time) {
 std::string tags_text(const Truth& truth) {
   std::string text = std::string(kTagsHeader) + "\n";
   for (const TrueTag& tag : truth.tags) {
-    text += tag.epc.hex() + "," + number(tag.p_W_X_m.x()) + "," + number(tag.p_W_X_m.y()) + "," + number(tag.p_W_X_m.z()) + "\n";
+    text += tag.epc.hex() + "," + number(tag.p_W_X_m.x()) + "," + number(tag.p_W_X_m.y()) + "," +
+            number(tag.p_W_X_m.z()) + "\n";
   }
   return text;
 }
@@ -84,13 +86,15 @@ std::string trajectory_text(const Truth& truth) {
 }
 
 // Calls `take` with every line after the header (or comments); false: the line is wrong.
-Status each_line(const std::string& path, const std::string& header, const std::function<bool(const std::string&)>& take) {
+Status each_line(const std::string& path, const std::string& header,
+                 const std::function<bool(const std::string&)>& take) {
   std::ifstream file(path);
   if (!file) return Error{ErrorCode::kNotFound, "cannot be opened", path};
   std::string line;
   for (int n = 1; std::getline(file, line); ++n) {
     if (line.empty() || line == header || line[0] == '#') continue;
-    if (!take(line)) return Error{ErrorCode::kMalformed, "'" + line + "' is not understood", path + ":" + std::to_string(n)};
+    if (!take(line))
+      return Error{ErrorCode::kMalformed, "'" + line + "' is not understood", path + ":" + std::to_string(n)};
   }
   return Done{};
 }
@@ -136,10 +140,14 @@ Status write_truth(const Truth& truth, const std::string& directory) {
 
 Result<Truth> read_truth(const std::string& directory) {
   Truth truth;
-  if (Status s = each_line(directory + "/tags.csv", kTagsHeader, [&](const std::string& l) { return take_tag(l, truth); }); !s.ok()) {
+  if (Status s =
+          each_line(directory + "/tags.csv", kTagsHeader, [&](const std::string& l) { return take_tag(l, truth); });
+      !s.ok()) {
     return s.error();
   }
-  if (Status s = each_line(directory + "/trajectory.tum", "", [&](const std::string& l) { return take_pose(l, truth); }); !s.ok()) {
+  if (Status s =
+          each_line(directory + "/trajectory.tum", "", [&](const std::string& l) { return take_pose(l, truth); });
+      !s.ok()) {
     return s.error();
   }
   Result<Calibration> calibration = read_calibration(directory + "/antennas.toml");
