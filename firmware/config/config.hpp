@@ -39,11 +39,14 @@ struct JointConfig {
   double structured_sigma_rad = 0.4;      // smooth phase error (multipath, antenna pattern) before it is estimated
   double structured_sigma_floor_rad = 0.15;
   double correlation_length_m = 0.058;    // Matern 3/2 length: 0.61 at 8 cm, as measured on real data
-  double white_sigma_rad = 0.05;          // reader noise at -55..-45 dBm; scaled by RSSI
   double flip_probability = 0.003;        // of a pi flip of the reader
+  double outlier_probability = 0.01;      // of a phase that tells nothing
   double tag_range_max_m = 5.0;           // tags farther than this from the path are not looked for
   double scale_min_m = 0.05, scale_max_m = 20.0;  // metres per unit of V
-  double solve_interval_s = 1.0;          // a new solution this often, in event time
+  double stale_after_s = 600.0;           // a tag not read for longer is STALE
+  double scale_sigma_max = 0.15;          // of ln(scale); above: NO_SCALE
+  double speed_min_m_s = 0.03, speed_max_m_s = 3.0;  // of the cart while it moves, mean
+  double time_offset_sigma_s = 0.005;     // camera against reader, after the clocks are matched
   double knot_spacing_m = 0.25;           // between the path's correction knots
   double located_sigma_max_m = 0.25;      // above: WEAK_GEOMETRY
   double vo_scale_walk_per_sqrt_m = 0.0035;   // drift of the odometry's scale, 1 sigma
@@ -71,6 +74,10 @@ struct JournalConfig {
   std::string directory = "";         // empty: no journal
 };
 
+struct DaemonConfig {
+  std::string calibration = "";       // TOML file: camera, mounting, antennas
+};
+
 struct Config {
   EstimatorConfig estimator;
   SyncConfig sync;
@@ -80,6 +87,7 @@ struct Config {
   LcmConfig lcm;
   CameraConfig camera;
   JournalConfig journal;
+  DaemonConfig daemon;
 };
 
 }  // namespace rfmvo

@@ -27,6 +27,8 @@ struct ConfigRow {
   std::string_view doc;
 };
 
+inline constexpr std::size_t kMaxTextLength = 1024;  // of keys and of text values, bytes
+
 using ConfigValue = std::variant<double, std::int64_t, bool, std::string>;
 
 [[nodiscard]] std::span<const ConfigRow> config_rows();
@@ -35,6 +37,13 @@ using ConfigValue = std::variant<double, std::int64_t, bool, std::string>;
 // Checks type and range and writes the member. Errors name the key, the unit, the range and, for an
 // unknown key, the nearest known one.
 [[nodiscard]] Status set_value(Config& config, std::string_view key, const ConfigValue& value);
+// Works on numbers given as text too ("--set key=value"): the row's type decides how `text` is read.
+[[nodiscard]] Status set_value_from_text(Config& config, std::string_view key, std::string_view text);
+// What one key's range cannot say: pairs that must be ordered.
+[[nodiscard]] Status check_consistency(const Config& config);
 [[nodiscard]] ConfigValue get_value(const Config& config, const ConfigRow& row);
+
+// "unknown key; did you mean ...?" with the nearest of the known keys (not empty) by edit distance.
+[[nodiscard]] Error unknown_key(std::string_view key, std::span<const std::string_view> known);
 
 }  // namespace rfmvo

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "edges/event_io.hpp"
 
@@ -41,6 +42,19 @@ class JournalReader : public EventSource {
   explicit JournalReader(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+struct JournalSummary {
+  Start start;  // the first one
+  std::uint64_t events = 0, frames = 0, camera_poses = 0, tag_reads = 0;
+  DeviceTime first, last;  // of the earliest and the latest event
+};
+
+// Goes through the whole file without decoding images. Same errors as JournalReader; no Start is
+// kMalformed.
+[[nodiscard]] Result<JournalSummary> summarise_journal(const std::string& path, const std::string& prefix);
+
+// Can the journal feed the configured estimator.pose_source? The error says which one it can feed.
+[[nodiscard]] Status check_pose_source(const JournalSummary& journal, const Config& config, const std::string& path);
 
 // Every estimate of a result log, in order. Same errors as JournalReader.
 [[nodiscard]] Result<std::vector<Estimate>> read_estimates(const std::string& path, const std::string& prefix);

@@ -22,7 +22,7 @@ struct LcmMessage {
 
 // Channel names without the prefix: START FRAME CAMERA_POSE TAG_READ TICK FAULT COMMAND (journal),
 // VO_POSE TAG SCALE METRIC_POSE POSE TRAJECTORY MAP_REVISION HEALTH (outputs; a MetricPose goes out
-// on METRIC_POSE and on POSE).
+// on METRIC_POSE and, as a copy for others that is not read back, on POSE).
 [[nodiscard]] LcmMessage encode(const Event& event, std::string_view prefix);
 [[nodiscard]] std::vector<LcmMessage> encode(const Estimate& estimate, std::string_view prefix);
 

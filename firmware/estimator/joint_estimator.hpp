@@ -3,7 +3,9 @@
 // offsets, phase error correlated along the path. Started from the near-field power spectrum.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "config/calibration.hpp"
@@ -21,6 +23,9 @@ class JointEstimator {
 
   void on(const CameraPose& pose);
   void on(const SampledRead& read);
+
+  [[nodiscard]] std::optional<MetricPose> newest_pose() const;  // nothing while the scale is open
+  [[nodiscard]] std::uint64_t reads_rejected() const;
 
   // Appends what is known now: a TagEstimate per tag, ScaleEstimate per segment, Trajectory, and (final)
   // the same from all data.

@@ -14,11 +14,12 @@
 namespace rfmvo::simulate {
 
 struct Options {
-  std::string scene = "aisle";       // wall | aisle | S3 | S6 (| straight, ... see scene.cpp)
-  std::string images_dir;            // real image sequence with metric truth; empty = synthetic
+  std::string scene = "aisle";  // one of scene_names()
+  std::string images_dir;       // real image sequence with metric truth; empty = synthetic
   std::uint64_t seed = 1;
   std::string vo_class = "NOMINAL";  // drift of the CameraPose events: PERFECT | BEST | NOMINAL | DEGRADED | BAD
   bool frames = true;                // false: no Frame events (fast; for replay from poses)
+  double reader_delay_s = 0.0;       // read stamps are late by this much against the camera's
 };
 
 struct TrueTag {
@@ -40,12 +41,16 @@ struct Truth {
   double scale_m_per_unit = 1.0;     // of the CameraPose events
 };
 
+[[nodiscard]] std::vector<std::string> scene_names();
+[[nodiscard]] std::vector<std::string> vo_class_names();
+
 using Sink = std::function<Status(const Event&)>;
 
 // Feeds `sink` with the run's events in time order (Start first). Same options, same events, bit for bit.
 [[nodiscard]] Result<Truth> simulate(const Options& options, const Sink& sink);
 
-// tags.csv (epc,x_m,y_m,z_m), trajectory.tum (t tx ty tz qx qy qz qw), antennas.toml
+// tags.csv (epc,x_m,y_m,z_m), trajectory.tum (t tx ty tz qx qy qz qw of T_W_C), antennas.toml (the
+// true calibration), scale.csv (m_per_unit). Each file is written under a temporary name and renamed.
 [[nodiscard]] Status write_truth(const Truth& truth, const std::string& directory);
 [[nodiscard]] Result<Truth> read_truth(const std::string& directory);
 

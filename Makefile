@@ -1,0 +1,82 @@
+# What people and CI type. Everything is incremental: what is there already is not made again.
+SHELL := /bin/bash
+.DEFAULT_GOAL := build
+JOBS ?= $(shell nproc)
+CCACHE := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+# Tests that are only a matter of numbers, and slow under the sanitizers.
+ASAN_EXCLUDE ?= scenario|reference
+
+rfmvo := build/release/host/rfmvo
+
+.PHONY: build demo demo-files test test-asan test-clang bench format format-check tidy packages clean
+
+packages:
+	@cmake/install-packages.sh
+
+build: packages
+	@$(MAKE) --no-print-directory compile-release
+
+# compile-PRESET: configures once, then builds what changed.
+.PHONY: compile-release compile-asan compile-clang
+compile-release compile-asan compile-clang: compile-%: build/%/build.ninja
+	@cmake --build build/$* -j $(JOBS)
+
+build/%/build.ninja: CMakePresets.json
+	@cmake --preset $* $(CCACHE)
+	@touch $@
+
+# A simulated aisle from raw events to a report.
+demo: build
+	@$(MAKE) --no-print-directory demo-files
+	@cat demo/evaluation.txt
+	@echo "report: $(CURDIR)/demo/report.html"
+
+demo-files: demo/report.html
+
+demo/run.lcmlog: $(rfmvo)
+	@mkdir -p demo
+	$(rfmvo) simulate --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth
+
+demo/result.lcmlog: demo/run.lcmlog $(rfmvo)
+	$(rfmvo) replay demo/run.lcmlog --out demo/result.lcmlog --json demo/replay.json
+
+demo/evaluation.txt: demo/result.lcmlog
+	$(rfmvo) evaluate demo/result.lcmlog --truth demo/truth --replay-json demo/replay.json \
+	  --json demo/evaluation.json >demo/evaluation.tmp
+	@mv demo/evaluation.tmp $@
+
+demo/report.html: demo/evaluation.txt
+	$(rfmvo) report demo/result.lcmlog --truth demo/truth --out demo/report.html
+
+test: build
+	@ctest --test-dir build/release --output-on-failure -j 2
+
+test-asan: packages
+	@$(MAKE) --no-print-directory compile-asan
+	@ctest --test-dir build/asan --output-on-failure -j 2 -LE '$(ASAN_EXCLUDE)'
+
+test-clang:
+	@cmake/install-packages.sh clang
+	@$(MAKE) --no-print-directory compile-clang
+	@ctest --test-dir build/clang --output-on-failure -j 2
+
+bench: build
+	build/release/tests/rfmvo_benchmarks
+
+sources = $(shell git ls-files '*.cpp' '*.hpp')
+
+format:
+	@cmake/install-packages.sh clang-format
+	clang-format -i $(sources)
+
+format-check:
+	@cmake/install-packages.sh clang-format
+	clang-format --dry-run -Werror $(sources)
+
+tidy: build
+	@cmake/install-packages.sh clang-tidy
+	clang-tidy --quiet -p build/release $(filter firmware/%.cpp host/%.cpp,$(sources))
+
+# The Python environment and downloaded packages stay.
+clean:
+	rm -rf build/release build/asan build/clang demo

@@ -1,0 +1,25 @@
+#include "edges/stop_signal.hpp"
+
+#include <csignal>
+
+namespace rfmvo {
+namespace {
+
+// Global, because a signal handler has nothing else to reach.
+volatile std::sig_atomic_t stop_flag = 0;
+
+void on_signal(int) { stop_flag = 1; }
+
+}  // namespace
+
+void catch_stop_signals() {
+  struct sigaction action{};
+  action.sa_handler = on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // and no SA_RESTART
+  (void)::sigaction(SIGTERM, &action, nullptr);
+  (void)::sigaction(SIGINT, &action, nullptr);
+}
+
+bool stop_requested() { return stop_flag != 0; }
+
+}  // namespace rfmvo

@@ -1,0 +1,147 @@
+#include "estimator/chain_whitening.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.hpp"
+#include "estimator/phase_error_model.hpp"
+#include "rf/phase.hpp"
+
+namespace rfmvo {
+namespace {
+
+// Reads farther back than this share no structured error (correlation below 0.02 at 5.7 lengths).
+constexpr double kMaxNeighbourLengths = 5.7;
+constexpr double kOutlierWeight = 0.2;  // below: not used to predict its followers
+
+using Raw = WhitenedTag::Raw;
+
+Raw raw_row(const JointRead& read, const JointState& state, const TagState& tag) {
+  const PredictedPhase p = predict_phase(read.geometry, states_at(read, state, tag));
+  const PhaseJacobian& j = p.jacobian;
+  Raw raw;
+  raw.residual = wrap_rad(read.phase_rad - p.phase_rad);
+  raw.tag << j.tag_position, 1.0;
+  raw.globals << j.log_scale, j.time_offset, 1.0, j.electrical_length, j.lever_arm;
+  raw.gradient_knot << j.path_correction, j.rotation_correction;
+  return raw;
+}
+
+struct Neighbours {
+  std::array<std::size_t, Conditioning::kMaxNeighbours> index{};
+  std::size_t count = 0;
+};
+
+// The last usable reads of the same chain, near enough to share the structured error.
+Neighbours neighbours_of(std::size_t i, const std::vector<JointRead>& reads, const std::vector<Raw>& raws,
+                         double length_m) {
+  Neighbours n;
+  const int last_knot = reads[i].knot + 1;
+  for (std::size_t j = i; j-- > 0 && n.count < Conditioning::kMaxNeighbours;) {
+    if (reads[j].port != reads[i].port) break;
+    if ((reads[i].p_W_A - reads[j].p_W_A).norm() > kMaxNeighbourLengths * length_m) break;
+    if (last_knot - reads[j].knot + 1 > WhitenedRow::kMaxKnots) break;
+    if (raws[j].usable) n.index[n.count++] = j;
+  }
+  return n;
+}
+
+Conditioning conditioning(std::size_t i, const Neighbours& n, const std::vector<JointRead>& reads, double sigma_rad,
+                          double length_m) {
+  Eigen::Matrix<double, 4, 4> distance = Eigen::Matrix<double, 4, 4>::Zero();
+  Eigen::Vector4d white = Eigen::Vector4d::Zero();
+  const auto at = [&](std::size_t k) -> const JointRead& { return reads[k == 0 ? i : n.index[k - 1]]; };
+  for (std::size_t a = 0; a <= n.count; ++a) {
+    white[static_cast<Eigen::Index>(a)] = at(a).white_rad2;
+    for (std::size_t b = 0; b <= n.count; ++b)
+      distance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = (at(a).p_W_A - at(b).p_W_A).norm();
+  }
+  return condition_on_neighbours(n.count, distance, white, sigma_rad, length_m);
+}
+
+void add_scaled(WhitenedRow& row, const Raw& raw, const JointRead& read, double factor) {
+  row.tag += factor * raw.tag;
+  row.globals += factor * raw.globals;
+  const auto k = static_cast<std::size_t>(read.knot - row.first_knot);
+  row.knot[k] += factor * (1.0 - read.knot_fraction) * raw.gradient_knot;
+  row.knot[k + 1] += factor * read.knot_fraction * raw.gradient_knot;
+}
+
+// What one read may be: as modelled, flipped by pi, or (multipath at its worst, a stray reader) any
+// phase at all. -ln of the mixture, relative to the first component's peak; weight = probability of
+// being a measurement of this geometry at all.
+struct Judgement {
+  double innovation = 0.0;  // of the likelier of the two, rad
+  bool flipped = false;
+  double cost = 0.0, weight = 1.0;
+};
+Judgement judge(double innovation, double sigma_rad, const JointProblem& problem) {
+  const double other = wrap_rad(innovation + kPi);
+  const double as_is = (1.0 - problem.flip_probability) * std::exp(-0.5 * std::pow(innovation / sigma_rad, 2));
+  const double flip = problem.flip_probability * std::exp(-0.5 * std::pow(other / sigma_rad, 2));
+  const double any = problem.outlier_probability * sigma_rad / std::sqrt(kTwoPi);  // uniform on the circle
+  const double sum = (1.0 - problem.outlier_probability) * (as_is + flip);
+  const bool flipped = flip > as_is;
+  return {flipped ? other : innovation, flipped, -std::log(sum + any), sum / (sum + any)};
+}
+
+}  // namespace
+
+ReadStates states_at(const JointRead& read, const JointState& state, const TagState& tag) {
+  const PortState& port = state.ports[static_cast<std::size_t>(read.port)];
+  const KnotState& a = state.knots[static_cast<std::size_t>(read.knot)];
+  const KnotState& b = state.knots[static_cast<std::size_t>(read.knot) + 1];
+  const double f = read.knot_fraction;
+  return {.log_scale = state.log_scale,
+          .time_offset_s = state.time_offset_s,
+          .port_offset_rad = port.offset_rad,
+          .electrical_length_m = port.electrical_length_m,
+          .lever_arm_C = port.lever_arm_C,
+          .path_correction_W = (1.0 - f) * a.path_correction_W + f * b.path_correction_W,
+          .rotation_correction_W = (1.0 - f) * a.rotation_correction_W + f * b.rotation_correction_W,
+          .p_W_X = tag.p_W_X,
+          .tag_offset_rad = tag.offset_rad};
+}
+
+void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
+            const TagState& tag, bool with_jacobian, WhitenedTag& out) {
+  std::vector<Raw>& raws = out.raws;
+  raws.clear();
+  out.rows.resize(reads.size());
+  out.cost = out.log_variance = out.inliers = 0.0;
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    raws.push_back(raw_row(reads[i], state, tag));
+    Raw& raw = raws.back();
+    const Neighbours n = neighbours_of(i, reads, raws, problem.correlation_length_m);
+    const Conditioning c =
+        conditioning(i, n, reads, tag.structured_sigma_rad, problem.correlation_length_m);
+    double predicted = 0.0;
+    for (std::size_t k = 0; k < n.count; ++k) predicted += c.weights[k] * raws[n.index[k]].residual;
+
+    WhitenedRow& row = out.rows[i];
+    row = WhitenedRow{};
+    row.port = reads[i].port;
+    const double sigma_rad = std::sqrt(c.variance_rad2);
+    const Judgement judgement = judge(wrap_rad(raw.residual - predicted), sigma_rad, problem);
+    raw.residual = predicted + judgement.innovation;  // continuous along the chain: followers are predicted well
+    const double inverse_sigma = 1.0 / sigma_rad;
+    row.residual = judgement.innovation * inverse_sigma;
+    row.weight = judgement.weight;
+    row.flipped = judgement.flipped;
+    raw.usable = row.weight > kOutlierWeight;
+    out.cost += judgement.cost;
+    out.log_variance += std::log(c.variance_rad2);
+    out.inliers += row.weight;
+    if (!with_jacobian) continue;
+
+    row.first_knot = reads[i].knot;
+    for (std::size_t k = 0; k < n.count; ++k) row.first_knot = std::min(row.first_knot, reads[n.index[k]].knot);
+    row.knots = reads[i].knot + 2 - row.first_knot;
+    for (int k = 0; k < row.knots; ++k) row.knot[static_cast<std::size_t>(k)].setZero();
+    add_scaled(row, raw, reads[i], inverse_sigma);
+    for (std::size_t k = 0; k < n.count; ++k)
+      add_scaled(row, raws[n.index[k]], reads[n.index[k]], -c.weights[k] * inverse_sigma);
+  }
+}
+
+}  // namespace rfmvo

@@ -1,0 +1,210 @@
+#include "estimator/joint_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.hpp"
+#include "estimator/accuracy_estimation.hpp"
+#include "estimator/joint_segment.hpp"
+
+namespace rfmvo {
+
+struct JointEstimator::Impl {
+  Config config;
+  Calibration calibration;
+  std::vector<JointSegment> segments;
+  DeviceTime last_solve;
+  std::uint32_t last_revision = 0;
+};
+
+namespace {
+
+struct ClosestApproach {
+  PathPose pose;
+  double distance_m = std::numeric_limits<double>::infinity();
+};
+
+ClosestApproach closest_approach(const JointSegment& segment, const Eigen::Vector3d& p_W_X) {
+  ClosestApproach best;
+  for (const PathPose& pose : segment.path().poses()) {
+    const double d = (segment.T_W_C(pose).t - p_W_X).norm();
+    if (d < best.distance_m) best = {pose, d};
+  }
+  return best;
+}
+
+// p_C_X = R_W_C^T (x - p_W_C): covariance from the joint one of tag and path.
+Eigen::Matrix3d camera_relative_covariance(const JointSegment& segment, const SegmentTag& tag, const PathPose& pose,
+                                           const Eigen::Vector3d& p_W_X) {
+  const Rigid3 T_W_C = segment.T_W_C(pose);
+  const Eigen::Matrix3d R_C_W = T_W_C.R.conjugate().toRotationMatrix();
+  if (tag.shared_covariance.size() == 0) return R_C_W * tag.covariance.topLeftCorner<3, 3>() * R_C_W.transpose();
+  const Eigen::MatrixXd J_pose = segment.pose_jacobian(pose);
+  // exp(theta) turns the camera: p_C_X changes by R_C_W skew(x - p) theta.
+  const Eigen::MatrixXd J = -J_pose.topRows<3>() + skew(p_W_X - T_W_C.t) * J_pose.bottomRows<3>();
+  const Eigen::MatrixXd cross = J * tag.shared_covariance.topRows<3>().transpose();  // 3 x 3
+  const Eigen::Matrix3d in_W = tag.covariance.topLeftCorner<3, 3>() + cross + cross.transpose() +
+                               J * segment.shared_covariance().shared * J.transpose();
+  return R_C_W * in_W * R_C_W.transpose();
+}
+
+struct Accuracy {
+  double hdop = 0.0, bearing_sweep_rad = 0.0, independent_reads = 0.0;
+};
+
+Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Vector3d& p_W_X, double length_m) {
+  Accuracy a;
+  std::vector<Eigen::Vector3d> antennas;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& chain : tag.chains) {
+    std::size_t previous = antennas.size();
+    const std::size_t first = previous;
+    for (const SegmentTag::Read& r : chain) {
+      antennas.push_back(segment.antenna_W(r));
+      mean += (p_W_X - antennas.back()).normalized();
+      // Travel shorter than about two correlation lengths brings no new structured error.
+      const double moved = antennas.size() - 1 == first ? 1e9 : (antennas.back() - antennas[previous]).norm();
+      if (moved > 2.0 * length_m) {
+        a.independent_reads += 1.0;
+        previous = antennas.size() - 1;
+      }
+    }
+  }
+  for (const Eigen::Vector3d& p : antennas) {
+    const double cosine = std::clamp((p_W_X - p).normalized().dot(mean.normalized()), -1.0, 1.0);
+    a.bearing_sweep_rad = std::max(a.bearing_sweep_rad, 2.0 * std::acos(cosine));
+  }
+  a.hdop = horizontal_dilution(antennas, p_W_X).value;
+  return a;
+}
+
+TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Matrix3d& covariance_m2,
+                    DeviceTime now, const JointConfig& config) {
+  if (!segment.started() || !tag.placed) return tag.placed ? TagStatus::kNoScale : TagStatus::kTooFewReads;
+  if (!segment.scale_observable()) return TagStatus::kNoScale;
+  constexpr double kSecondModeMatters = 0.02;
+  if (tag.modes.size() > 1 && 1.0 - tag.modes[0].weight > kSecondModeMatters) return TagStatus::kMirror;
+  if ((now - tag.last_read).seconds() > config.stale_after_s) return TagStatus::kStale;
+  const double sigma_m = std::sqrt(covariance_m2.trace());
+  return sigma_m > config.located_sigma_max_m ? TagStatus::kWeakGeometry : TagStatus::kConverged;
+}
+
+TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentTag& tag, DeviceTime now,
+                     const JointConfig& config) {
+  TagEstimate e;
+  e.time = now;
+  e.epc = epc;
+  e.segment = segment.id();
+  e.map_revision = segment.revision();
+  e.reads = tag.reads;
+  e.status = TagStatus::kTooFewReads;
+  if (!tag.placed) return e;
+
+  const Eigen::Vector3d p = segment.to_W(tag.state.p_W_X);
+  e.p_W_X_m = p;
+  e.covariance_m2 = tag.covariance.topLeftCorner<3, 3>();
+  if (tag.shared_covariance.size() > 0)
+    e.covariance_with_log_scale_m = tag.shared_covariance.block<3, 1>(0, SharedLayout::kLogScale);
+  const ClosestApproach closest = closest_approach(segment, p);
+  const Rigid3 T_W_C = segment.T_W_C(closest.pose);
+  e.closest_approach = closest.pose.time;
+  e.p_C_X_m = T_W_C.inverse() * p;
+  e.covariance_C_m2 = camera_relative_covariance(segment, tag, closest.pose, p);
+  const Accuracy accuracy = accuracy_of(segment, tag, p, config.correlation_length_m);
+  e.hdop = accuracy.hdop;
+  e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
+  e.independent_reads = accuracy.independent_reads;
+  e.status = status_of(segment, tag, e.covariance_C_m2, now, config);
+  constexpr std::size_t kMaxHypotheses = 8;
+  for (std::size_t i = 0; i < std::min(tag.modes.size(), kMaxHypotheses); ++i) {
+    const TagMode& mode = tag.modes[i];
+    const bool first = i == 0;  // the first one is the published position, refined since
+    e.hypotheses.push_back({first ? p : segment.to_W(mode.tag.p_W_X),
+                            first ? e.covariance_m2 : Eigen::Matrix3d(mode.covariance.topLeftCorner<3, 3>()),
+                            mode.weight});
+  }
+  return e;
+}
+
+Trajectory describe_path(const JointSegment& segment, DeviceTime now) {
+  Trajectory t;
+  t.time = now;
+  t.segment = segment.id();
+  t.map_revision = segment.revision();
+  for (const PathPose& pose : segment.path().poses())
+    t.poses.push_back({pose.time, segment.id(), segment.revision(), segment.T_W_C(pose), segment.pose_covariance(pose)});
+  return t;
+}
+
+}  // namespace
+
+JointEstimator::JointEstimator(const Config& config, const Calibration& calibration) : impl_(std::make_unique<Impl>()) {
+  impl_->config = config;
+  impl_->calibration = calibration;
+}
+JointEstimator::~JointEstimator() = default;
+
+void JointEstimator::on(const CameraPose& pose) {
+  if (pose.status != VoStatus::kTracking && pose.status != VoStatus::kDegraded) return;
+  auto& segments = impl_->segments;
+  if (segments.empty() || segments.back().id() != pose.segment) {
+    // A new segment starts where the last one was left, as far as is known; the first at the origin.
+    Rigid3 T_W_C0 = impl_->calibration.T_B_C;
+    if (!segments.empty() && !segments.back().path().empty())
+      T_W_C0 = segments.back().T_W_C(segments.back().path().poses().back());
+    segments.emplace_back(impl_->config, impl_->calibration, pose.segment, T_W_C0);
+  }
+  segments.back().add(pose);
+}
+
+void JointEstimator::on(const SampledRead& read) {
+  for (JointSegment& segment : impl_->segments)
+    if (segment.id() == read.segment) segment.add(read);
+}
+
+std::uint64_t JointEstimator::reads_rejected() const {
+  std::uint64_t n = 0;
+  for (const JointSegment& s : impl_->segments) n += s.reads_rejected();
+  return n;
+}
+
+void JointEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& out) {
+  auto& segments = impl_->segments;
+  if (segments.empty()) return;
+  if (final)
+    for (JointSegment& s : segments) s.solve(true);
+  else
+    segments.back().solve(false);
+
+  // The best answer per tag: the segment with the smallest honest sigma.
+  std::map<Epc, TagEstimate> best;
+  const auto sigma = [](const TagEstimate& e) {
+    return e.status == TagStatus::kTooFewReads ? 1e9 : e.covariance_C_m2.trace() + (e.status == TagStatus::kNoScale ? 1e6 : 0.0);
+  };
+  std::uint32_t revision = 0;
+  for (const JointSegment& s : segments) {
+    revision += s.revision();
+    for (const auto& [epc, tag] : s.tags()) {
+      const TagEstimate e = describe(s, epc, tag, now, impl_->config.joint);
+      const auto place = best.find(epc);
+      if (place == best.end() || sigma(e) < sigma(place->second)) best[epc] = e;
+    }
+    out.emplace_back(ScaleEstimate{now, s.id(), s.scale_observable(), s.started() ? s.scale_m_per_unit() : 0.0,
+                                   s.started() ? s.log_scale_sigma() : 0.0});
+    if (s.started() && (final || &s == &segments.back())) out.emplace_back(describe_path(s, now));
+  }
+  for (auto& [epc, e] : best) out.emplace_back(std::move(e));
+  if (revision != impl_->last_revision) out.emplace_back(MapRevision{now, revision, final ? "final solution" : "new reads"});
+  impl_->last_revision = revision;
+}
+
+std::optional<MetricPose> JointEstimator::newest_pose() const {
+  if (impl_->segments.empty()) return std::nullopt;
+  const JointSegment& s = impl_->segments.back();
+  if (!s.scale_observable() || s.path().empty()) return std::nullopt;
+  const PathPose& pose = s.path().poses().back();
+  return MetricPose{pose.time, s.id(), s.revision(), s.T_W_C(pose), s.pose_covariance(pose)};
+}
+
+}  // namespace rfmvo

@@ -1,0 +1,78 @@
+// The joint least-squares problem of one odometry segment: reads, states, priors. What the solver
+// (joint_solver.hpp) minimises. docs/estimator.md, section 3.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "estimator/phase_model.hpp"
+
+namespace rfmvo {
+
+// Drift of the odometry, corrected at knots along the path and interpolated between them.
+struct KnotState {
+  Eigen::Vector3d path_correction_W = Eigen::Vector3d::Zero();  // d, m
+  Eigen::Vector3d rotation_correction_W = Eigen::Vector3d::Zero();  // theta, rad
+  double log_scale_drift = 0.0;                                  // epsilon: scale here / scale at the start - 1
+};
+
+struct PortState {
+  double offset_rad = 0.0;           // relative to the first port
+  double electrical_length_m = 0.0;
+  Eigen::Vector3d lever_arm_C = Eigen::Vector3d::Zero();
+};
+
+struct TagState {
+  Eigen::Vector3d p_W_X = Eigen::Vector3d::Zero();
+  double offset_rad = 0.0;
+  double structured_sigma_rad = 0.4;
+};
+
+struct JointState {
+  double log_scale = 0.0;
+  double time_offset_s = 0.0;
+  std::vector<PortState> ports;
+  std::vector<KnotState> knots;
+  std::vector<TagState> tags;
+};
+
+struct JointRead {
+  ReadGeometry geometry;
+  double phase_rad = 0.0;     // measured
+  double white_rad2 = 0.0;    // variance of the uncorrelated error
+  Eigen::Vector3d p_W_A = Eigen::Vector3d::Zero();  // antenna at the reference scale: distances between reads
+  int port = 0;               // index into ports
+  int knot = 0;               // the read lies between knot and knot + 1,
+  double knot_fraction = 0.0;  // this far along
+};
+
+// The stretch of path between two neighbouring knots.
+struct KnotInterval {
+  Eigen::Vector3d step_W = Eigen::Vector3d::Zero();  // unscaled displacement, axes of W
+  double length_V = 0.0;                             // travel, units of V
+};
+
+struct JointPriors {
+  double time_offset_sigma_s = 0.005;
+  double electrical_length_m = 0.0, electrical_length_sigma_m = 10.0;
+  std::vector<Eigen::Vector3d> lever_arm_C;      // per port
+  std::vector<double> lever_arm_sigma_m;         // per port
+  double scale_walk_per_sqrt_m = 0.0035;         // of epsilon
+  double rotation_walk_rad_per_sqrt_m = 0.0044;  // of theta, per axis
+  double knot_position_sigma_m = 0.0005;         // what interpolation between knots leaves, per step
+};
+
+struct JointProblem {
+  std::vector<std::vector<JointRead>> reads;  // per tag; grouped by port, in time order within a port
+  std::vector<KnotInterval> intervals;        // knots - 1
+  JointPriors priors;
+  double reference_scale_m = 1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
+  double correlation_length_m = 0.058;
+  double flip_probability = 0.003;     // of a pi flip
+  double outlier_probability = 0.01;   // of a phase that tells nothing
+};
+
+[[nodiscard]] ReadStates states_at(const JointRead& read, const JointState& state, const TagState& tag);
+
+}  // namespace rfmvo

@@ -1,0 +1,101 @@
+// One odometry segment of the joint estimator: its reads, its path, its states and their solution.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "config/calibration.hpp"
+#include "config/config.hpp"
+#include "estimator/joint_problem.hpp"
+#include "estimator/joint_solver.hpp"
+#include "estimator/odometry_path.hpp"
+#include "estimator/sampling_synchronization.hpp"
+#include "estimator/tag_modes.hpp"
+#include "rf/epc.hpp"
+
+namespace rfmvo {
+
+struct SegmentTag {
+  struct Read {
+    JointRead read;  // without knot and reference position, which depend on the scale
+    double arc_V = 0.0;
+    double time_s = 0.0;  // since the segment's start
+    double frequency_hz = 0.0;
+  };
+  std::vector<std::vector<Read>> chains;  // per port, in time order
+  std::uint32_t reads = 0;
+  DeviceTime last_read;
+
+  TagState state;
+  std::vector<TagMode> modes;    // best first
+  std::size_t reads_at_modes = 0;  // when they were looked for
+  bool placed = false;           // state holds a position
+  bool joined = false;           // took part in the joint solution
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Eigen::MatrixXd shared_covariance;  // 4 x shared states
+};
+
+class JointSegment {
+ public:
+  JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0);
+
+  void add(const CameraPose& pose);
+  void add(const SampledRead& read);
+
+  // A new solution from all reads so far. `thorough` looks for all modes of all tags again.
+  void solve(bool thorough);
+
+  [[nodiscard]] std::uint32_t id() const { return id_; }
+  [[nodiscard]] const std::map<Epc, SegmentTag>& tags() const { return tags_; }
+  [[nodiscard]] const OdometryPath& path() const { return path_; }
+  [[nodiscard]] bool started() const { return started_; }
+  [[nodiscard]] bool scale_observable() const;
+  [[nodiscard]] double scale_m_per_unit() const;
+  [[nodiscard]] double log_scale_sigma() const;
+  [[nodiscard]] std::uint32_t revision() const { return revision_; }
+  [[nodiscard]] std::uint64_t reads_rejected() const { return rejected_; }
+
+  [[nodiscard]] Rigid3 T_W_C(const PathPose& pose) const;  // with the newest corrections
+  [[nodiscard]] Eigen::Vector3d to_W(const Eigen::Vector3d& p) const { return p + T_W_C0_.t; }
+  [[nodiscard]] Eigen::Vector3d antenna_W(const SegmentTag::Read& read) const;
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> pose_covariance(const PathPose& pose) const;
+  // d (position, rotation) of the camera / d shared states, at a place of the path; 6 x shared.
+  [[nodiscard]] Eigen::MatrixXd pose_jacobian(const PathPose& pose) const;
+  [[nodiscard]] const JointCovariance& shared_covariance() const { return covariance_; }
+
+ private:
+  [[nodiscard]] std::optional<int> port_index(std::uint8_t port) const;
+  [[nodiscard]] JointProblem problem_for(const std::vector<Epc>& epcs, double reference_scale_m) const;
+  [[nodiscard]] JointState state_for(const std::vector<Epc>& epcs) const;
+  void keep(const std::vector<Epc>& epcs, const JointState& state);
+  void resize_knots();
+  bool start();
+  void place(bool thorough);
+  void weigh_with_path_uncertainty(const JointProblem& problem, JointState state, std::vector<TagMode>& modes) const;
+  void refine();
+  void compute_covariance();
+  [[nodiscard]] std::vector<Epc> joined_tags() const;
+  void estimate_electrical_lengths();
+
+  Config config_;
+  Calibration calibration_;
+  std::uint32_t id_;
+  Rigid3 T_W_C0_;
+  OdometryPath path_;
+  BeamModel beams_;
+  std::map<Epc, SegmentTag> tags_;
+  double reference_frequency_hz_ = 0.0;
+  DeviceTime start_time_;
+
+  bool started_ = false;
+  double next_start_arc_V_ = 0.0;
+  double runner_up_cost_ = 0.0;   // of the best start at another scale, above the best
+  double knot_spacing_V_ = 1.0;
+  JointState shared_;             // tags stand in tags_
+  JointCovariance covariance_;
+  std::uint32_t revision_ = 0;
+  std::uint64_t rejected_ = 0;
+};
+
+}  // namespace rfmvo

@@ -1,0 +1,60 @@
+// Levenberg-Marquardt on the joint problem, with the Schur complement over the tags: each tag couples
+// only to the shared states (scale, time offset, ports, path), so its four unknowns are eliminated
+// first and the rest is one small dense system. docs/estimator.md, section 4.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/joint_problem.hpp"
+
+namespace rfmvo {
+
+// Where the shared states stand in the reduced system. The first knot is the frame's origin and the
+// first port's offset is part of every tag's offset: both are fixed.
+struct SharedLayout {
+  int ports = 0, knots = 0;
+  static constexpr int kLogScale = 0, kTimeOffset = 1, kFirstPort = 2, kPerPort = 5, kPerKnot = 7;
+  [[nodiscard]] int port(int p) const { return kFirstPort + kPerPort * p; }             // offset, length, lever arm (3)
+  [[nodiscard]] int knot(int k) const { return port(ports) + kPerKnot * (k - 1); }      // k >= 1: d (3), theta (3), epsilon
+  [[nodiscard]] int size() const { return port(ports) + kPerKnot * (knots - 1); }
+};
+
+struct SolverOptions {
+  int max_iterations = 12;
+  double step_tolerance = 1e-5;      // relative decrease of the cost that ends the iteration
+  bool shared_fixed = false;         // only the tags move (a known path)
+};
+
+struct SolverReport {
+  double cost = 0.0;  // -ln likelihood up to a constant: robust losses + priors + 1/2 sum ln variance
+  int iterations = 0;
+  bool converged = false;
+};
+
+[[nodiscard]] SolverReport solve(const JointProblem& problem, const SolverOptions& options, JointState& state);
+
+// Joint covariance at the solution: of the shared states, and per tag of (position, offset) with its
+// cross-covariance to the shared states.
+struct JointCovariance {
+  SharedLayout layout;
+  Eigen::MatrixXd shared;
+  std::vector<Eigen::Matrix4d> tag;
+  std::vector<Eigen::MatrixXd> tag_shared;  // 4 x size()
+};
+[[nodiscard]] JointCovariance covariance(const JointProblem& problem, const JointState& state);
+
+// One tag (problem holds it alone) seen from the shared states: its own covariance with them fixed,
+// how it leans on them, and what its reads say of them once the tag itself is eliminated.
+struct TagCoupling {
+  Eigen::Matrix4d own_covariance = Eigen::Matrix4d::Zero();
+  Eigen::MatrixXd H_shared;     // 4 x size(): d2 cost / d tag d shared
+  Eigen::MatrixXd information;  // size() x size(), lower triangle valid on both sides
+  Eigen::VectorXd gradient;     // -d cost / d shared
+};
+[[nodiscard]] TagCoupling tag_coupling(const JointProblem& problem, const JointState& state);
+
+// Robust cost of everything at a state (what solve() minimises).
+[[nodiscard]] double total_cost(const JointProblem& problem, const JointState& state);
+
+}  // namespace rfmvo

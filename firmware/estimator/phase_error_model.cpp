@@ -1,0 +1,44 @@
+#include "estimator/phase_error_model.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace rfmvo {
+
+double structured_correlation(double distance_m, double length_m) {
+  const double a = std::abs(distance_m) / length_m;
+  return (1.0 + a) * std::exp(-a);
+}
+
+double white_sigma_rad(double rssi_dbm) {
+  constexpr double kStrong_dbm = -45.0, kMiddle_dbm = -50.0, kWeak_dbm = -57.0;
+  constexpr double kStrong_rad = 0.022, kMiddle_rad = 0.06, kWeak_rad = 0.2;
+  if (rssi_dbm >= kStrong_dbm) return kStrong_rad;
+  if (rssi_dbm <= kWeak_dbm) return kWeak_rad;
+  if (rssi_dbm >= kMiddle_dbm)
+    return kMiddle_rad + (kStrong_rad - kMiddle_rad) * (rssi_dbm - kMiddle_dbm) / (kStrong_dbm - kMiddle_dbm);
+  return kWeak_rad + (kMiddle_rad - kWeak_rad) * (rssi_dbm - kWeak_dbm) / (kMiddle_dbm - kWeak_dbm);
+}
+
+Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
+                                     const Eigen::Vector4d& white_rad2, double structured_sigma_rad, double length_m) {
+  const double power = structured_sigma_rad * structured_sigma_rad;
+  Conditioning c;
+  c.variance_rad2 = power + white_rad2[0];
+  if (count == 0) return c;
+  const auto n = static_cast<Eigen::Index>(count);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> K(n, n);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> k(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    k[i] = power * structured_correlation(distances_m(0, i + 1), length_m);
+    for (Eigen::Index j = 0; j < n; ++j)
+      K(i, j) = power * structured_correlation(distances_m(i + 1, j + 1), length_m) + (i == j ? white_rad2[i + 1] : 0.0);
+  }
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> a = K.llt().solve(k);
+  for (Eigen::Index i = 0; i < n; ++i) c.weights[static_cast<std::size_t>(i)] = a[i];
+  c.variance_rad2 = std::max(c.variance_rad2 - k.dot(a), white_rad2[0]);
+  return c;
+}
+
+}  // namespace rfmvo

@@ -1,0 +1,19 @@
+// Strength of the structured phase error, from the residuals themselves: restricted maximum
+// likelihood per tag, pooled over tags where a tag alone says little. docs/estimator.md, section 6.
+#pragma once
+
+#include "estimator/joint_problem.hpp"
+
+namespace rfmvo {
+
+struct StrengthOptions {
+  double floor_rad = 0.15;
+  double prior_rad = 0.4;           // typical strength,
+  double prior_log_sigma = 0.6;     // of the typical strength over sites,
+  double tag_log_sigma = 0.25;      // and of a tag's strength about its site's
+};
+
+// Writes structured_sigma_rad of every tag in state.
+void estimate_structured_strength(const JointProblem& problem, const StrengthOptions& options, JointState& state);
+
+}  // namespace rfmvo

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/drift.hpp"
+#include "simulate/random.hpp"
+#include "simulate/reader.hpp"
+#include "simulate/scene.hpp"
+
+namespace rfmvo::simulate {
+namespace {
+
+constexpr DeviceTime kEpoch{1'767'225'600'000'000'000};  // 2026-01-01 00:00 UTC
+constexpr double kTick_s = 1.0;
+
+// Journals count microseconds.
+DeviceTime at(double t_s) { return kEpoch + Duration{std::llround(t_s * 1e6) * 1000}; }
+
+// The lever arms as a ruler finds them: off by what the calibration itself claims, 1 sigma.
+Calibration nominal_of(Calibration calibration, std::uint64_t seed) {
+  Random random(seed, "lever arm errors");
+  for (AntennaCalibration& antenna : calibration.antennas) {
+    for (int i = 0; i < 3; ++i) antenna.p_C_A_m[i] += antenna.lever_arm_sigma_m * random.normal();
+  }
+  return calibration;
+}
+
+Truth truth_of(const Scene& scene) {
+  // W is the cart at the first frame.
+  const Rigid3 T_W_S = scene.calibration.T_B_C * scene.T_S_C(scene.start_s()).inverse();
+  Truth truth;
+  truth.calibration = scene.calibration;
+  for (const SceneTag& tag : scene.tags) truth.tags.push_back({tag.epc, T_W_S * tag.p_S_X_m});
+  for (const double t_s : scene.frame_times_s) truth.trajectory.push_back({at(t_s), T_W_S * scene.T_S_C(t_s)});
+  return truth;
+}
+
+std::vector<TagRead> reads_of(const Scene& scene, const Options& options) {
+  const RadioLink link = scene.physical_link ? make_physical_link(scene) : make_statistical_link(scene, options.seed);
+  const std::vector<Singulation> singulations = scene.physical_link ? gen2_inventory(scene, link, options.seed)
+                                                                    : statistical_inventory(scene, link, options.seed);
+  const ReaderHardware hardware = draw_hardware(scene.tags.size(), scene.calibration.antennas.size(), options.seed);
+  return report(scene, singulations, link, hardware, options.seed,
+                kEpoch + Duration::from_seconds(options.reader_delay_s));
+}
+
+// Everything but the frames, which are made one at a time when their turn comes.
+std::vector<Event> small_events(const Scene& scene, const Options& options, const std::vector<CameraPose>& poses) {
+  std::vector<Event> events;
+  for (const CameraPose& pose : poses) events.emplace_back(pose);
+  for (const TagRead& read : reads_of(scene, options)) events.emplace_back(read);
+  for (double t_s = scene.start_s() + kTick_s; t_s <= scene.end_s(); t_s += kTick_s) events.emplace_back(Tick{at(t_s)});
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return time_of(a) < time_of(b); });
+  return events;
+}
+
+Status feed(const Scene& scene, bool with_frames, const std::vector<Event>& events, const Sink& sink) {
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < scene.frame_times_s.size() && with_frames; ++k) {
+    const DeviceTime time = at(scene.frame_times_s[k]);
+    for (; next < events.size() && time_of(events[next]) < time; ++next) {
+      if (Status s = sink(events[next]); !s.ok()) return s;
+    }
+    Result<Frame> made = scene.frame(k);
+    if (!made.ok()) return made.error();
+    Frame frame = std::move(made).value();
+    frame.time = time;
+    frame.sequence = static_cast<std::int64_t>(k);
+    if (Status s = sink(std::move(frame)); !s.ok()) return s;
+  }
+  for (; next < events.size(); ++next) {
+    if (Status s = sink(events[next]); !s.ok()) return s;
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Result<Truth> simulate(const Options& options, const Sink& sink) {
+  const std::optional<DriftClass> drift_class = find_drift_class(options.vo_class);
+  if (!drift_class) {
+    std::string known;
+    for (const std::string& name : vo_class_names()) known += (known.empty() ? "" : ", ") + name;
+    return Error{ErrorCode::kUnknownKey, "unknown odometry class '" + options.vo_class + "'; known: " + known,
+                 "--vo-class"};
+  }
+  Result<Scene> made = make_scene(options);
+  if (!made.ok()) return made.error();
+  const Scene scene = std::move(made).value();
+  const bool with_frames = options.frames && scene.frame;
+
+  Truth truth = truth_of(scene);
+  const DriftedPoses drifted = drift(truth.trajectory, *drift_class, options.seed);
+  truth.scale_m_per_unit = drifted.scale_m_per_unit;
+
+  Start start;
+  start.time = at(scene.start_s());
+  start.config.estimator.pose_source = with_frames ? "frames" : "poses";
+  start.calibration = nominal_of(scene.calibration, options.seed);
+  if (Status s = sink(start); !s.ok()) return s.error();
+  if (Status s = feed(scene, with_frames, small_events(scene, options, drifted.poses), sink); !s.ok()) return s.error();
+  return truth;
+}
+
+}  // namespace rfmvo::simulate

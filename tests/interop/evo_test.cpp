@@ -1,0 +1,93 @@
+// The same numbers as evo (github.com/MichaelGrupp/evo, PyPI), the field's tool for trajectories, run as
+// its command on exported files.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands/export_text.hpp"
+#include "commands/whole_file.hpp"
+#include "evaluate/evaluation.hpp"
+#include "support/evaluate_world.hpp"
+
+namespace rfmvo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string output_of(const std::string& command) {
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return "";
+  std::string text;
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) text.append(buffer.data(), n);
+  ::pclose(pipe);
+  return text;
+}
+
+// evo leaves a zip: stats.json, and the 4x4 matrix of the alignment.
+constexpr const char* kReadZip = R"(import io, json, sys, zipfile
+import numpy as np
+z = zipfile.ZipFile(sys.argv[1])
+stats = json.loads(z.read('stats.json'))
+name = [n for n in z.namelist() if 'alignment_transformation' in n][0]
+T = np.load(io.BytesIO(z.read(name)))
+print(json.dumps({'rmse': stats['rmse'], 'scale': float(np.cbrt(np.linalg.det(T[:3, :3])))}))
+)";
+
+struct EvoNumbers {
+  double rmse_m = 0.0;
+  double scale = 0.0;
+};
+
+class EvoTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(venv_ / "bin/evo_ape")) {
+      GTEST_SKIP() << "no evo in " << venv_.string() << " (cmake/install-packages.sh puts it there)";
+    }
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    ASSERT_TRUE(write_whole_file(folder_ / "read_zip.py", kReadZip).ok());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // HOME: evo keeps its settings there. stdin closed: it asks nothing.
+  [[nodiscard]] EvoNumbers ape(const std::string& flags) const {
+    const std::string zip = folder_ / ("result" + flags + ".zip");
+    const std::string env = "cd '" + folder_.string() + "' && HOME='" + folder_.string() + "' MPLBACKEND=agg ";
+    const std::string log = output_of(env + "'" + (venv_ / "bin/evo_ape").string() + "' tum truth.tum estimate.tum " +
+                                      flags + " --no_warnings --save_results '" + zip + "' 2>&1 </dev/null");
+    EXPECT_TRUE(fs::exists(zip)) << log;
+    const std::string text = output_of(env + "'" + (venv_ / "bin/python").string() + "' read_zip.py '" + zip + "'");
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    EXPECT_TRUE(json.is_object()) << text;
+    if (!json.is_object()) return {};
+    return {json["rmse"].get<double>(), json["scale"].get<double>()};
+  }
+
+  const fs::path venv_ = RFMVO_VENV;
+  const fs::path folder_ = fs::path(::testing::TempDir()) / "rfmvo_evo_test";
+};
+
+constexpr double kRelative = 1e-6;
+
+TEST_F(EvoTest, AgreesOnAteAndScaleOfANoisyPathWithWrongScale) {
+  const auto truth = testing::winding_truth(600, 0);
+  const auto result = testing::noisy_result(truth, {.T_W_truth = testing::some_motion(), .metric_error = 1.03});
+  ASSERT_TRUE(write_whole_file(folder_ / "estimate.tum", to_tum(evaluate::last_of(result))).ok());
+  ASSERT_TRUE(write_whole_file(folder_ / "truth.tum", to_tum(evaluate::last_of(testing::perfect_result(truth)))).ok());
+
+  const auto ours = evaluate::evaluate(result, truth).value().trajectory;
+  const EvoNumbers se3 = ape("-a"), sim3 = ape("-as");
+  ASSERT_GT(se3.rmse_m, 0.02);
+  EXPECT_NEAR(*ours.ate_se3_m, se3.rmse_m, kRelative * se3.rmse_m);
+  EXPECT_NEAR(*ours.ate_sim3_m, sim3.rmse_m, kRelative * sim3.rmse_m);
+  EXPECT_NEAR(ours.segments.at(0).sim3_scale, sim3.scale, kRelative);
+}
+
+}  // namespace
+}  // namespace rfmvo
