@@ -15,7 +15,8 @@ constexpr double kLength_m = 4.5;
 constexpr double kDuration_s = 15.0;
 constexpr double kCameraHeight_m = 1.05;
 constexpr double kSquare_m = 0.029;  // of the checkerboards, Section VII-A
-constexpr int kSquares = 24;
+constexpr int kSquares = 16;
+constexpr int kNotices = 60;
 constexpr double kBoard_m = kSquare_m * kSquares;
 
 // Mean 0.3 m/s, between 0.12 and 0.48 m/s: "different speeds and trajectories" within the 1 m/s limit.
@@ -73,11 +74,14 @@ void furnish(Environment& room, Random& random) {
   room.surfaces.push_back(ground);
   const TexturePointer checks = checkerboard_texture(kSquares);
   for (const Board& board : kBoards) {
-    add_poster(room, {board.x_m, kWallY_m - 0.002, board.z_m}, kBoard_m, kBoard_m, checks);
+    add_poster(room, {board.x_m, kWallY_m - 0.003, board.z_m}, kBoard_m, kBoard_m, checks);
   }
-  for (int n = 0; n < 10; ++n) {  // notes on the wall
-    const double x_m = -1.2 + 0.75 * n + random.uniform(-0.1, 0.1);
-    add_poster(room, {x_m, kWallY_m - 0.001, random.uniform(1.75, 2.1)}, 0.25, 0.18, cardboard_texture(random));
+  // Notices all over the wall, as an office has them; the boards hang in front of some.
+  for (int n = 0; n < kNotices; ++n) {
+    const double x_m = -2.0 + 8.5 * (n + random.uniform()) / kNotices, z_m = random.uniform(0.5, 2.3);
+    const double width_m = random.uniform(0.15, 0.4);
+    const double y_m = kWallY_m - 0.001 - 2e-5 * n;  // where two overlap, always the same one is in front
+    add_poster(room, {x_m, y_m, z_m}, width_m, 1.3 * width_m, cardboard_texture(random));
   }
   for (int n = 0; n < 9; ++n) {  // boxes at the foot of the wall: depth for the odometry
     const double x_m = -1.4 + 0.85 * n, depth_m = random.uniform(0.2, 0.45), height_m = random.uniform(0.25, 0.6);

@@ -179,7 +179,7 @@ TexturePointer clutter_texture(Random& random) {
 
 TexturePointer plaster_texture(Random& random) {
   Sheet sheet(10, 165.0F);
-  for (int i = 0; i < 900; ++i) {
+  for (int i = 0; i < 2500; ++i) {
     const double x = random.uniform(), y = random.uniform(), r = random.uniform(0.001, 0.004);
     sheet.disc(x, y, r, static_cast<float>(random.uniform(70, 225)));
   }
