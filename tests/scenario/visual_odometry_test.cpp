@@ -312,7 +312,7 @@ TEST(VisualOdometryRealData, HandheldKitchen) {
   EXPECT_LT(a.start_s, 1.5);
   EXPECT_GE(a.tracked_share, 0.98);
   EXPECT_EQ(segments(s).size(), 1U);
-  EXPECT_LT(a.error_share, 0.015);
+  EXPECT_LT(a.error_share, 0.013);
 }
 
 TEST(VisualOdometryRealData, SliderLookingSideways) {
@@ -322,7 +322,7 @@ TEST(VisualOdometryRealData, SliderLookingSideways) {
   const Accuracy a = accuracy(s);
   EXPECT_GE(a.tracked_share, 0.9);
   EXPECT_EQ(segments(s).size(), 1U);
-  EXPECT_LT(a.error_share, 0.009);
+  EXPECT_LT(a.error_share, 0.005);
 }
 
 }  // namespace
