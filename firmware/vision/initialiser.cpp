@@ -13,8 +13,8 @@ namespace {
 
 // VISION design: a flow of 18..20 px at 640x480 (f about 520 px) before the start is tried.
 constexpr double kMinFlow_rad = 18.0 / 520.0;
-constexpr double kViewFlow_rad = kMinFlow_rad / 4.0;  // a view to keep on the way
-constexpr double kMinRotationResidual_px = 1.0;       // twice what KLT noise and a poor calibration leave
+const double kViewFlow_rad = kMinFlow_rad / 4.0;  // a view to keep on the way
+constexpr double kMinRotationResidual_px = 1.0;   // twice what KLT noise and a poor calibration leave
 constexpr std::size_t kMinPairs = 40;
 constexpr double kMinCommon = 0.5;  // of the reference's tracks
 constexpr std::size_t kMaxViews = 12;
@@ -22,7 +22,8 @@ constexpr double kRivalScore = 0.7;  // of the best: worth building
 constexpr std::size_t kMaxRivals = 4;
 constexpr double kRivalCost = 1.25;  // the runner-up must be this much worse, or be the same pose
 constexpr double kSamePose_rad = 2.0 * kPi / 180.0;
-constexpr double kMinInliers = 0.6;  // of the pairs
+constexpr double kMinInliers = 0.6;       // of the pairs
+constexpr double kMissingCost_px2 = 0.3;  // of a pair that got no place; measured: 0.1..1 are alike
 constexpr double kMaxMeanCost_px2 = 2.0;
 constexpr std::size_t kMinPoints = kMinPairs / 2;
 constexpr double kMinPointParallax = 0.3;  // of the median's gate: far points may have less than the median
@@ -114,7 +115,7 @@ bool Initialiser::is_clear(const std::vector<Candidate>& candidates) {
   for (const Candidate& rival : candidates) {
     const Eigen::Quaterniond& a = best.map.keyframes.front().T_C_V.R_C_V;
     const bool same = a.angularDistance(rival.map.keyframes.front().T_C_V.R_C_V) < kSamePose_rad;
-    if (!same && rival.cost_per_observation_px2 < kRivalCost * best.cost_per_observation_px2) return false;
+    if (!same && rival.cost_px2 < kRivalCost * best.cost_px2) return false;
   }
   return true;
 }
@@ -130,12 +131,11 @@ std::optional<Map> Initialiser::attempt(const std::vector<Pair>& pairs, const Vi
     if (auto candidate = build(h, pairs, current)) candidates.push_back(std::move(*candidate));
   }
   if (candidates.empty()) return std::nullopt;
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.cost_per_observation_px2 < b.cost_per_observation_px2;
-  });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost_px2 < b.cost_px2; });
   Candidate& best = candidates.front();
   const bool good = best.points >= kMinInliers * static_cast<double>(pairs.size()) &&
-                    best.parallax_rad >= options_.min_parallax_rad && best.cost_per_observation_px2 <= kMaxMeanCost_px2;
+                    best.parallax_rad >= options_.min_parallax_rad && best.cost_px2 <= kMaxMeanCost_px2;
   if (!good || !is_clear(candidates)) return std::nullopt;
   return std::move(best.map);
 }
@@ -159,7 +159,7 @@ std::optional<Initialiser::Candidate> Initialiser::build(const TwoViewHypothesis
   add_views(views, ids, hypothesis.T_C2_C1, bundle);
   const BundleReport report = adjust_bundle(bundle, {options_.focal_px, kBundleHuber_px, kBundleIterations});
   Candidate candidate;
-  candidate.cost_per_observation_px2 = report.final_cost / static_cast<double>(bundle.observations.size());
+  candidate.cost_px2 = report.final_cost / static_cast<double>(bundle.observations.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
     const auto id = static_cast<std::int64_t>(v);
     candidate.map.keyframes.push_back({id, views[v]->time, bundle.views[v].T_C_V, views[v]->pyramid});
@@ -169,6 +169,9 @@ std::optional<Initialiser::Candidate> Initialiser::build(const TwoViewHypothesis
   }
   locate(ids, candidate);
   if (candidate.points < static_cast<int>(kMinPoints)) return std::nullopt;
+  // A pair without a place is not free: else the hypothesis that explains the fewest would win.
+  const double missing = 1.0 - candidate.points / static_cast<double>(pairs.size());
+  candidate.cost_px2 += missing * kMissingCost_px2;
   normalise(candidate.map);
   return candidate;
 }

@@ -39,7 +39,7 @@ class Initialiser {
   };
   struct Candidate {
     Map map;
-    double cost_per_observation_px2 = 0.0;
+    double cost_px2 = 0.0;      // per observation, after adjustment; pairs without a place pay, too
     double parallax_rad = 0.0;  // median between the first and the last view
     int points = 0;
   };

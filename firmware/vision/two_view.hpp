@@ -1,5 +1,6 @@
 // Relative pose of two views of an unknown scene: candidates from an essential matrix AND from a
-// homography, because planar walls and shelves defeat the first, deep scenes the second.
+// homography, because planar walls and shelves defeat the first, deep scenes the second; and from a
+// translation without rotation, because a narrow lens confuses a sideways step with a turn.
 #pragma once
 
 #include <Eigen/Core>

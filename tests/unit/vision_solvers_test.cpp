@@ -212,6 +212,27 @@ TEST_P(TwoView, TheTruePoseIsAmongTheBestHypotheses) {
 
 INSTANTIATE_TEST_SUITE_P(DeepAndFlat, TwoView, testing::Bool());
 
+// A narrow lens, a shallow scene, noise: essential matrix and homography may both take the step for a turn.
+TEST(TwoView, SidewaysStepWithoutATurnAlwaysStandsForElection) {
+  std::mt19937 random(17);
+  std::vector<PointPair> pairs;
+  for (int i = 0; i < 120; ++i) {
+    const Eigen::Vector3d p(uniform(random, -0.3, 0.4), uniform(random, -0.25, 0.25), uniform(random, 0.95, 1.05));
+    const auto noise = [&random]() -> Eigen::Vector2d {
+      return Eigen::Vector2d(uniform(random, -1, 1), uniform(random, -1, 1)) / kFocal_px;
+    };
+    const Eigen::Vector3d step(0.05, 0.0, 0.0);
+    pairs.push_back({p.hnormalized() + noise(), (p - step).hnormalized() + noise()});
+    if (i % 8 == 0) pairs.back().second += Eigen::Vector2d(0.03, -0.05);
+  }
+  bool stands = false;
+  for (const auto& h : two_view_hypotheses(pairs, kFocal_px, 2.0)) {
+    const ViewPose truth{Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}};
+    stands = stands || (rotation_error_rad(h.T_C2_C1, truth) < 1e-9 && h.T_C2_C1.t_C_V.dot(truth.t_C_V) > 0.995);
+  }
+  EXPECT_TRUE(stands);
+}
+
 TEST(TwoView, RotationAloneLeavesNoResidualAndTranslationDoes) {
   const Scene scene = make_scene(80, 2);
   const ViewPose turned{so3_exp({0.02, 0.1, -0.03}), Eigen::Vector3d::Zero()};
