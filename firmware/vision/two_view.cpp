@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
@@ -53,22 +55,44 @@ void add_homography(const std::vector<cv::Point2d>& a, const std::vector<cv::Poi
   }
 }
 
-// A cart that passes a shelf hardly turns between two views, and a narrow lens confuses a turn with a
-// sideways step: so the pose without any turn always stands for election. Its direction is the one that
-// is most nearly at right angles to all n2 x n1; Huber-like re-weighting takes the outliers' votes away.
-void add_translation(std::span<const PointPair> pairs, double threshold, std::vector<ViewPose>& poses) {
-  constexpr int kRounds = 5;
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
-    for (const PointPair& pair : pairs) {
-      const Eigen::Vector3d normal = pair.second.homogeneous().cross(pair.first.homogeneous());
-      const double length = std::max(normal.norm(), threshold);
-      const double error = std::abs(t.dot(normal)) / length * (pair.second - pair.first).norm();
-      M.noalias() += normal * normal.transpose() / (1.0 + (error * error) / (threshold * threshold));
-    }
-    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
+// How far the second point is from the line on which a pure translation t moves the first.
+double translation_error(const PointPair& pair, const Eigen::Vector3d& t) {
+  const Eigen::Vector3d line = t.cross(pair.first.homogeneous());
+  const double length = line.head<2>().norm();
+  return length > 0.0 ? std::abs(line.dot(pair.second.homogeneous())) / length : 0.0;
+}
+
+// The direction with the smallest sum of capped errors among those that two pairs define, over pairs
+// from all parts of the list.
+Eigen::Vector3d elected_direction(const std::vector<Eigen::Vector3d>& normals, std::span<const PointPair> pairs,
+                                  double threshold) {
+  Eigen::Vector3d best = Eigen::Vector3d::UnitX();
+  double best_cost = std::numeric_limits<double>::infinity();
+  const std::size_t half = pairs.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    const Eigen::Vector3d t = normals[i].cross(normals[i + half]);
+    if (t.norm() < 1e-12) continue;
+    double cost = 0.0;
+    for (const PointPair& pair : pairs) cost += std::min(translation_error(pair, t.normalized()), threshold);
+    if (cost >= best_cost) continue;
+    best_cost = cost;
+    best = t.normalized();
   }
+  return best;
+}
+
+// A cart that passes a shelf hardly turns between two views, and a narrow lens confuses a turn with a
+// sideways step: so the pose without any turn always stands for election. Its direction is the one most
+// nearly at right angles to all n2 x n1 of the pairs inside the threshold.
+void add_translation(std::span<const PointPair> pairs, double threshold, std::vector<ViewPose>& poses) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const PointPair& pair : pairs) normals.push_back(pair.second.homogeneous().cross(pair.first.homogeneous()));
+  Eigen::Vector3d t = elected_direction(normals, pairs, threshold);
+  Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (translation_error(pairs[i], t) < threshold) M.noalias() += normals[i] * normals[i].transpose();
+  }
+  t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
   for (const double sign : {1.0, -1.0}) poses.push_back({Eigen::Quaterniond::Identity(), sign * t});
 }
 
