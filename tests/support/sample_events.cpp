@@ -55,7 +55,7 @@ Start sample_start() {
   Start start;
   start.time = DeviceTime::from_us(1'700'000'000'000'000);
   start.config.estimator.pose_source = "poses";
-  start.config.joint.white_sigma_rad = 0.1 + 0.2;
+  start.config.joint.structured_sigma_rad = 0.1 + 0.2;
   start.calibration = sample_calibration();
   return start;
 }

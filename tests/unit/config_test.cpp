@@ -63,16 +63,16 @@ TEST(ConfigToml, WritingAndReadingGivesTheSameBits) {
 
 TEST(ConfigToml, KeysThatAreNotMentionedKeepTheBase) {
   Config base;
-  base.joint.white_sigma_rad = 0.5;
+  base.joint.structured_sigma_rad = 0.5;
   const auto config = parse_config("[joint]\ntag_range_max_m = 3\n", "box.toml", base);
   ASSERT_TRUE(config.ok());
-  EXPECT_EQ(config.value().joint.white_sigma_rad, 0.5);
+  EXPECT_EQ(config.value().joint.structured_sigma_rad, 0.5);
   EXPECT_EQ(config.value().joint.tag_range_max_m, 3.0);
 }
 
 TEST(ConfigToml, AnUnknownKeyNamesFileLineAndTheNearestKey) {
-  EXPECT_EQ(config_error("[joint]\n\nwhite_sigma_deg = 3\n"),
-            "box.toml:3: joint.white_sigma_deg: unknown key; did you mean joint.white_sigma_rad?");
+  EXPECT_EQ(config_error("[joint]\n\nstructured_sigma_deg = 3\n"),
+            "box.toml:3: joint.structured_sigma_deg: unknown key; did you mean joint.structured_sigma_rad?");
   EXPECT_EQ(config_error("[estimater]\nkind = \"joint\"\n"),
             "box.toml:2: estimater.kind: unknown key; did you mean estimator.kind?");
   EXPECT_EQ(config_error("kind = 1\n").substr(0, 30), "box.toml:1: kind: unknown key;");
