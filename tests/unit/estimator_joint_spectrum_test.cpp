@@ -12,13 +12,13 @@ constexpr double kTurns_m = 2.0 * 921e6 / joint_scene::kLight_m_s;
 const Eigen::Vector3d kTag(0.8, 1.6, 0.25);
 
 // Two antennas of different height on a 1.6 m path along x, looking to the left (y).
-std::vector<SpectrumRead> reads_of(const Eigen::Vector3d& tag, int per_antenna) {
+std::vector<SpectrumRead> reads_of(const Eigen::Vector3d& tag, int per_antenna, double weave_m = 0.1) {
   std::vector<SpectrumRead> reads;
   for (int g = 0; g < 2; ++g)
     for (int i = 0; i < per_antenna; ++i) {
       SpectrumRead r;
       const double x = 1.6 * i / (per_antenna - 1);
-      const Eigen::Vector3d p(x, 0.1 * std::sin(4.0 * x), g == 0 ? 0.0 : 0.5);
+      const Eigen::Vector3d p(x, weave_m * std::sin(4.0 * x), g == 0 ? 0.0 : 0.5);
       r.p_W_A = p.cast<float>();
       r.boresight_W = Eigen::Vector3f::UnitY();
       r.turns_per_m = static_cast<float>(kTurns_m);
@@ -36,10 +36,10 @@ SpectrumOptions all_reads(std::span<const SpectrumRead> reads) {
 
 TEST(NearFieldSpectrum, PowerIsTheNumberOfReadsAtTheTruthAndNowhereMore) {
   const auto reads = reads_of(kTag, 30);
-  // Positions and phases in float: 60 reads, each off by some 1e-6 turns, enter squared.
-  EXPECT_NEAR(near_field_power(reads, kTag), 60.0, 1e-6);
+  // 1 / reads in float: 60 to 6e-8, twice. Phases in float are off by some 1e-6 turns and enter squared.
+  EXPECT_NEAR(near_field_power(reads, kTag), 60.0, 1e-5);
   std::mt19937 random(61);
-  for (int i = 0; i < 1000; ++i) EXPECT_LE(near_field_power(reads, kTag + random_vector(random, 2.0)), 60.0 + 1e-6);
+  for (int i = 0; i < 1000; ++i) EXPECT_LE(near_field_power(reads, kTag + random_vector(random, 2.0)), 60.0 + 1e-5);
 }
 
 TEST(NearFieldSpectrum, PowerIsNoiseFarFromTheTruth) {
@@ -85,17 +85,25 @@ TEST(NearFieldSpectrum, SearchInFloatIsThePowerInDouble) {
 }
 
 TEST(NearFieldSpectrum, PeakIsAtTheTruthWithinACell) {
-  for (const Eigen::Vector3d& tag : {kTag, Eigen::Vector3d(0.2, 1.2, 0.6), Eigen::Vector3d(1.5, 2.0, -0.3)}) {
-    const auto reads = reads_of(tag, 40);
+  // Ports whose offsets are known, on a weaving path: an aperture in all three axes. Of a flatter one the peak is a
+  // ridge several cells long.
+  for (const Eigen::Vector3d& tag : {kTag, Eigen::Vector3d(0.2, 1.2, 0.6), Eigen::Vector3d(0.6, 1.4, 0.1)}) {
+    auto reads = reads_of(tag, 20, 0.4);
+    for (SpectrumRead& r : reads) {
+      r.phase_turns -= 0.3F * static_cast<float>(r.group);
+      r.group = 0;
+    }
     for (const std::size_t sifting : {24UL, 1000UL}) {
       SpectrumOptions options = all_reads(reads);
       options.sifting_reads = sifting;
+      options.cell_m.setConstant(0.04);
+      options.range_max_m = 2.5;
       const auto peaks = search_near_field(reads, options);
       ASSERT_FALSE(peaks.empty());
       EXPECT_LE((peaks[0].p_W_X - tag).cwiseQuotient(options.cell_m).cwiseAbs().maxCoeff(), 1.0)
           << sifting << ": " << peaks[0].p_W_X.transpose();
-      // Half a cell loses at most a radian at the ends of the aperture: well above half of the power.
-      EXPECT_GT(peaks[0].power, 40.0);
+      // 2 cm along each axis is at most 38.6 rad/m * 3.5 cm = 1.3 rad, and the mean of it goes into the offset.
+      EXPECT_GT(peaks[0].power, 0.75 * 40.0);
     }
   }
 }
@@ -115,7 +123,9 @@ TEST(NearFieldSpectrum, PeaksComeStrongestFirstAndApart) {
 TEST(NearFieldSpectrum, FindsNothingBehindTheAntennas) {
   const Eigen::Vector3d behind(0.8, -1.6, 0.25);
   const auto reads = reads_of(behind, 30);
-  const SpectrumOptions options = all_reads(reads);
+  SpectrumOptions options = all_reads(reads);
+  options.cell_m.setConstant(0.04);
+  options.range_max_m = 2.5;
   // A block of cells that reaches into the beam counts as in it: half of its diagonal.
   const double slack = 2.0 * options.cell_m.norm();
   for (const SpectrumPeak& peak : search_near_field(reads, options)) EXPECT_GT(peak.p_W_X.y(), -2.0 * slack);
@@ -139,11 +149,18 @@ TEST(NearFieldSpectrum, FindsNothingWhereNoAntennaPairLooks) {
   EXPECT_TRUE(search_near_field({}, options).empty());
 }
 
-TEST(NearFieldSpectrum, CellIsFineAlongTheApertureAndCoarseAcross) {
+TEST(NearFieldSpectrum, CellIsFineAlongTheApertureCoarseAcrossAndKeepsThePeak) {
   const auto reads = reads_of(kTag, 30);
   const Eigen::Vector3d cell = suitable_cell(reads, 0.01, 1.0);
   EXPECT_LT(cell.x(), cell.y());
   EXPECT_LT(cell.x(), cell.z());
+  // Half a cell off along one axis: at most a radian to either side, so at least cos(1) of the amplitude.
+  for (const Eigen::Vector3d& tag : {kTag, Eigen::Vector3d(0.2, 1.2, 0.6), Eigen::Vector3d(1.5, 2.0, -0.3)})
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double half : {-0.5, 0.5}) {
+        const Eigen::Vector3d off = half * cell[axis] * Eigen::Vector3d::Unit(axis);
+        EXPECT_GT(near_field_power(reads_of(tag, 30), tag + off), 0.29 * 60.0) << axis;
+      }
   const Eigen::Vector3d clamped = suitable_cell(reads, 0.06, 0.07);
   EXPECT_GE(clamped.minCoeff(), 0.06);
   EXPECT_LE(clamped.maxCoeff(), 0.07);
