@@ -56,7 +56,7 @@ struct JointConfig {
 
 struct VisionConfig {
   std::int64_t max_tracks = 200;
-  std::int64_t window_keyframes = 10;     // of the bundle adjustment
+  std::int64_t window_keyframes = 15;     // of the bundle adjustment
   double min_parallax_deg = 1.0;          // of a new map point
   double reprojection_gate_px = 2.0;
 };

@@ -5,7 +5,6 @@
 
 #include "base/units.hpp"
 #include "estimator/electrical_length.hpp"
-#include "estimator/joint_start.hpp"
 #include "estimator/phase_error_model.hpp"
 #include "estimator/structured_strength.hpp"
 #include "rf/phase.hpp"
@@ -18,12 +17,20 @@ constexpr std::size_t kMaxReadsPerChain = 120;  // more are thinned: neighbours 
 constexpr double kMeanTagDistance_m = 2.0;      // part of what hops measure as electrical length
 constexpr double kUniqueWeight = 0.95;          // of the best mode of a tag that may shape the path
 constexpr double kDecided = 6.0;                // ln likelihood ratio between two scales
+constexpr double kOtherScale = 0.1;             // of ln(scale): farther apart is another scale
 constexpr double kMinUHF_hz = 840e6, kMaxUHF_hz = 960e6;  // EPC Gen2, all regions
 
 }  // namespace
 
 JointSegment::JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0)
-    : config_(config), calibration_(calibration), id_(id), T_W_C0_(T_W_C0), path_(T_W_C0.R) {
+    : config_(config),
+      calibration_(calibration),
+      id_(id),
+      T_W_C0_(T_W_C0),
+      path_(T_W_C0.R),
+      correlation_length_m_(config.joint.correlation_length_m),
+      scale_walk_per_sqrt_m_(config.joint.vo_scale_walk_per_sqrt_m),
+      rotation_walk_rad_per_sqrt_m_(rad_from_deg(config.joint.vo_rotation_walk_deg_per_sqrt_m)) {
   for (const AntennaCalibration& antenna : calibration.antennas) {
     shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
@@ -75,15 +82,15 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   JointProblem problem;
   problem.intervals = path_.intervals(knot_spacing_V_);
   problem.reference_scale_m = reference_scale_m;
-  problem.correlation_length_m = config_.joint.correlation_length_m;
+  problem.correlation_length_m = correlation_length_m_;
   problem.flip_probability = config_.joint.flip_probability;
   problem.outlier_probability = config_.joint.outlier_probability;
   JointPriors& priors = problem.priors;
   priors.time_offset_sigma_s = config_.joint.time_offset_sigma_s;
   priors.electrical_length_m = 0.0;
   priors.electrical_length_sigma_m = 40.0;
-  priors.scale_walk_per_sqrt_m = config_.joint.vo_scale_walk_per_sqrt_m;
-  priors.rotation_walk_rad_per_sqrt_m = rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
+  priors.scale_walk_per_sqrt_m = scale_walk_per_sqrt_m_;
+  priors.rotation_walk_rad_per_sqrt_m = rotation_walk_rad_per_sqrt_m_;
   for (const AntennaCalibration& antenna : calibration_.antennas) {
     priors.lever_arm_C.push_back(antenna.p_C_A_m);
     priors.lever_arm_sigma_m.push_back(std::max(antenna.lever_arm_sigma_m, 1e-4));
@@ -141,37 +148,130 @@ void JointSegment::estimate_electrical_lengths() {
   }
 }
 
-bool JointSegment::start() {
-  const PathPose& last = path_.poses().back();
-  const double duration_s = (last.time - start_time_).seconds();
-  std::size_t tags_to_start_from = 0;
-  for (const auto& [epc, tag] : tags_) tags_to_start_from += tag.reads >= kMinReads ? 1 : 0;
-  if (path_.arc_V() <= next_start_arc_V_ || duration_s <= 0.0 || tags_to_start_from == 0) return false;
-  next_start_arc_V_ = 1.5 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
+std::vector<StartCandidate> JointSegment::search_starts() {
   estimate_electrical_lengths();
-
   std::vector<Epc> all;
   for (const auto& [epc, tag] : tags_) all.push_back(epc);
   StartOptions options;
   // The cart's mean speed bounds the scale before any read does.
-  const double speed_V_s = path_.arc_V() / duration_s;
+  const double speed_V_s = path_.arc_V() / (path_.poses().back().time - start_time_).seconds();
   options.log_scale_min = std::log(std::max(config_.joint.scale_min_m, config_.joint.speed_min_m_s / speed_V_s));
   options.log_scale_max = std::log(std::min(config_.joint.scale_max_m, config_.joint.speed_max_m_s / speed_V_s));
   options.range_max_m = config_.joint.tag_range_max_m;
-  knot_spacing_V_ = 1.01 * path_.arc_V();  // while the scale is open: one interval, drift is small yet
-  shared_.knots.assign(2, {});
-  const std::vector<StartCandidate> found = find_starts(problem_for(all, 1.0), state_for(all), beams_, options);
-  if (found.empty()) return false;
+  // While the scale is open the path bends in a few places only.
+  constexpr double kIntervals = 4.0;
+  const double spacing_V = 1.001 * path_.arc_V() / kIntervals;
+  knot_spacing_V_ = spacing_V;  // adopt() sets the spacing of the solution
+  JointState state = state_for(all);
+  state.knots.assign(path_.intervals(spacing_V).size() + 1, {});
+  std::vector<StartCandidate> found = find_starts(problem_for(all, 1.0), state, beams_, options);
+  std::erase_if(found, [](const StartCandidate& c) { return c.evidence < 0.0; });
+  return found;
+}
 
-  runner_up_cost_ = 1e9;
-  for (const StartCandidate& c : found)
-    if (std::abs(c.state.log_scale - found[0].state.log_scale) > 0.1)
-      runner_up_cost_ = std::min(runner_up_cost_, c.cost - found[0].cost);
-  keep(all, found[0].state);
-  for (const std::size_t t : found[0].used) tags_.at(all[t]).placed = true;
-  knot_spacing_V_ = config_.joint.knot_spacing_m / std::exp(shared_.log_scale);
+void JointSegment::adopt(const StartCandidate& candidate) {
+  std::size_t t = 0;
+  for (auto& [epc, tag] : tags_) {
+    tag.state = candidate.state.tags[t];
+    tag.placed = std::find(candidate.used.begin(), candidate.used.end(), t) != candidate.used.end();
+    tag.modes.clear();
+    ++t;
+  }
+  shared_ = candidate.state;
+  shared_.tags.clear();
   shared_.knots.assign(1, {});
+  knot_spacing_V_ = config_.joint.knot_spacing_m / std::exp(shared_.log_scale);
+  covariance_ = {};
+  started_ = true;
+}
+
+bool JointSegment::start() {
+  std::size_t tags_to_start_from = 0;
+  for (const auto& [epc, tag] : tags_) tags_to_start_from += tag.reads >= kMinReads ? 1 : 0;
+  if (path_.arc_V() <= next_start_arc_V_ || tags_to_start_from == 0) return false;
+  next_start_arc_V_ = 1.5 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
+  const std::vector<StartCandidate> found = search_starts();
+  if (found.empty()) return false;
+  evidence_margin_ = found[0].evidence;
+  for (const StartCandidate& c : found)
+    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kOtherScale)
+      evidence_margin_ = std::min(evidence_margin_, found[0].evidence - c.evidence);
+  adopt(found[0]);
   return true;
+}
+
+double JointSegment::total_evidence() const {
+  std::vector<Epc> placed;
+  for (const auto& [epc, tag] : tags_)
+    if (tag.placed && tag.reads >= kMinReads) placed.push_back(epc);
+  if (placed.empty()) return 0.0;
+  return evidence(problem_for(placed, std::exp(shared_.log_scale)), state_for(placed));
+}
+
+// At the end: is there another scale that explains all reads as well?
+void JointSegment::consider_rivals() {
+  double best = total_evidence(), second = 0.0;
+  constexpr double kWorthATry = 40.0;  // nats below the best start
+  constexpr std::size_t kMaxRivals = 2;
+  JointSegment rival = *this;
+  std::size_t tried = 0;
+  double first_evidence = 0.0;
+  for (const StartCandidate& c : rival.search_starts()) {
+    if (first_evidence == 0.0) first_evidence = c.evidence;
+    if (std::abs(c.state.log_scale - shared_.log_scale) < kOtherScale) continue;
+    if (tried == kMaxRivals || c.evidence < first_evidence - kWorthATry) break;
+    ++tried;
+    rival = *this;
+    rival.adopt(c);
+    rival.iterate(true);
+    const double e = rival.total_evidence();
+    if (e > best) {
+      second = best;
+      best = e;
+      const auto revision = revision_;
+      *this = rival;
+      revision_ = revision;
+    } else {
+      second = std::max(second, e);
+    }
+  }
+  evidence_margin_ = best - second;
+}
+
+// Random-walk strengths of the odometry from the corrections themselves: one step of expectation
+// maximisation, with the configured strength as a prior worth kPriorIntervals of path.
+void JointSegment::estimate_drift() {
+  const SharedLayout& layout = covariance_.layout;
+  const JointProblem problem = problem_for({}, std::exp(shared_.log_scale));
+  if (covariance_.shared.rows() != layout.size() || layout.knots != static_cast<int>(shared_.knots.size())) return;
+  constexpr double kPriorIntervals = 8.0;
+  const double nominal_scale = config_.joint.vo_scale_walk_per_sqrt_m;
+  const double nominal_turn = rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
+  double scale_sum = kPriorIntervals * nominal_scale * nominal_scale, scale_count = kPriorIntervals;
+  double turn_sum = 3.0 * kPriorIntervals * nominal_turn * nominal_turn, turn_count = 3.0 * kPriorIntervals;
+  const Eigen::MatrixXd& P = covariance_.shared;
+  const auto second_moment = [&](int k, int offset, double change) {
+    const int b = layout.knot(k + 1) + offset;
+    double variance = P(b, b);
+    if (k > 0) {
+      const int a = layout.knot(k) + offset;
+      variance += P(a, a) - 2.0 * P(a, b);
+    }
+    return change * change + std::max(variance, 0.0);
+  };
+  for (int k = 0; k + 1 < layout.knots; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double length_m = problem.reference_scale_m * problem.intervals[i].length_V;
+    const KnotState& a = shared_.knots[i];
+    const KnotState& b = shared_.knots[i + 1];
+    scale_sum += second_moment(k, 6, b.log_scale_drift - a.log_scale_drift) / length_m;
+    scale_count += 1.0;
+    for (int j = 0; j < 3; ++j)
+      turn_sum += second_moment(k, 3 + j, b.rotation_correction_W[j] - a.rotation_correction_W[j]) / length_m;
+    turn_count += 3.0;
+  }
+  scale_walk_per_sqrt_m_ = std::sqrt(scale_sum / scale_count);
+  rotation_walk_rad_per_sqrt_m_ = std::sqrt(turn_sum / turn_count);
 }
 
 std::vector<Epc> JointSegment::joined_tags() const {
@@ -186,7 +286,7 @@ std::vector<Epc> JointSegment::joined_tags() const {
 }
 
 // Modes of tags that are new, ambiguous, or (thorough) of all, given the path as it is.
-void JointSegment::place(bool thorough) {
+void JointSegment::place(Effort effort) {
   const double scale = std::exp(shared_.log_scale);
   for (auto& [epc, tag] : tags_) {
     std::size_t reads = 0;
@@ -194,13 +294,15 @@ void JointSegment::place(bool thorough) {
     if (reads < kMinReads) continue;
     const bool unique = tag.placed && !tag.modes.empty() && tag.modes[0].weight >= kUniqueWeight;
     // Looked at again when a third more reads have come.
-    if (!thorough && (unique || 3 * reads < 4 * tag.reads_at_modes)) continue;
+    if (effort == Effort::kNew && (unique || 3 * reads < 4 * tag.reads_at_modes)) continue;
     tag.reads_at_modes = reads;
     const JointProblem problem = problem_for({epc}, scale);
     const JointState state = state_for({epc});
     const SpectrumOptions options{.range_max_m = config_.joint.tag_range_max_m, .max_peaks = 16};
     constexpr std::size_t kReadsForModes = 64;
-    tag.modes = find_modes(problem, 0, state, beams_, options, true, kReadsForModes);
+    tag.modes = effort == Effort::kRefresh && !tag.modes.empty()
+                    ? refresh_modes(problem, 0, state, tag.modes)
+                    : find_modes(problem, 0, state, beams_, options, true, kReadsForModes);
     tag.placed = !tag.modes.empty();
     if (!tag.placed) continue;
     weigh_with_path_uncertainty(problem, state, tag.modes);
@@ -227,17 +329,18 @@ void JointSegment::weigh_with_path_uncertainty(const JointProblem& problem, Join
   weigh_modes(modes);
 }
 
-void JointSegment::refine() {
+void JointSegment::refine(int rounds) {
   const std::vector<Epc> epcs = joined_tags();
   if (epcs.empty()) return;
-  const JointProblem problem = problem_for(epcs, std::exp(shared_.log_scale));
+  JointProblem problem = problem_for(epcs, std::exp(shared_.log_scale));
   JointState state = state_for(epcs);
   const StrengthOptions strength{.floor_rad = config_.joint.structured_sigma_floor_rad,
                                  .prior_rad = config_.joint.structured_sigma_rad};
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
     estimate_structured_strength(problem, strength, state);
+    correlation_length_m_ = problem.correlation_length_m =
+        estimate_correlation_length(problem, state, config_.joint.correlation_length_m);
   }
   (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
   for (auto& [epc, tag] : tags_) tag.joined = false;
@@ -269,33 +372,38 @@ void JointSegment::compute_covariance() {
   }
 }
 
-void JointSegment::solve(bool thorough) {
-  if (path_.poses().size() < 2 || tags_.empty()) return;
-  if (!started_) {
-    if (thorough) next_start_arc_V_ = 0.0;
-    if (!start()) return;
-    started_ = true;
-  }
+void JointSegment::iterate(bool thorough) {
   resize_knots();
-  place(false);
-  refine();
+  place(Effort::kNew);
+  refine(1);
   compute_covariance();
+  estimate_drift();
   // The more tags join, the better the path and the port offsets, and the fewer modes remain.
   constexpr int kMaxRounds = 3;
   for (int round = 0; thorough && round < kMaxRounds; ++round) {
     const std::vector<Epc> before = joined_tags();
-    place(true);
-    refine();
+    place(round == 0 ? Effort::kAll : Effort::kRefresh);
+    refine(2);
     compute_covariance();
-    if (joined_tags() == before) break;
+    estimate_drift();
+    if (round > 0 && joined_tags() == before) break;
   }
+}
+
+void JointSegment::solve(bool thorough) {
+  if (path_.poses().size() < 2 || path_.arc_V() <= 0.0 || tags_.empty()) return;
+  if (thorough) next_start_arc_V_ = 0.0;
+  if (!started_ && !start()) return;
+  iterate(thorough);
+  if (thorough) consider_rivals();
   ++revision_;
-  // An undecided scale is searched again as the path grows.
-  if (!scale_observable() && !thorough) started_ = false;
+  // A solution that the reads do not support, or whose scale is undecided, is searched for again.
+  const bool believable = total_evidence() > 0.0;
+  if (!thorough && (!believable || !scale_observable())) started_ = false;
 }
 
 bool JointSegment::scale_observable() const {
-  return started_ && runner_up_cost_ > kDecided && log_scale_sigma() < config_.joint.scale_sigma_max;
+  return started_ && evidence_margin_ > kDecided && log_scale_sigma() < config_.joint.scale_sigma_max;
 }
 
 double JointSegment::scale_m_per_unit() const { return std::exp(shared_.log_scale); }

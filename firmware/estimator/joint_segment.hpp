@@ -9,6 +9,7 @@
 #include "config/config.hpp"
 #include "estimator/joint_problem.hpp"
 #include "estimator/joint_solver.hpp"
+#include "estimator/joint_start.hpp"
 #include "estimator/odometry_path.hpp"
 #include "estimator/sampling_synchronization.hpp"
 #include "estimator/tag_modes.hpp"
@@ -70,10 +71,17 @@ class JointSegment {
   [[nodiscard]] JointState state_for(const std::vector<Epc>& epcs) const;
   void keep(const std::vector<Epc>& epcs, const JointState& state);
   void resize_knots();
+  [[nodiscard]] std::vector<StartCandidate> search_starts();
+  void adopt(const StartCandidate& candidate);
   bool start();
-  void place(bool thorough);
+  void iterate(bool thorough);
+  void consider_rivals();
+  void estimate_drift();
+  [[nodiscard]] double total_evidence() const;
+  enum class Effort { kNew, kRefresh, kAll };  // search new and open tags; refine all modes; search all
+  void place(Effort effort);
   void weigh_with_path_uncertainty(const JointProblem& problem, JointState state, std::vector<TagMode>& modes) const;
-  void refine();
+  void refine(int rounds);
   void compute_covariance();
   [[nodiscard]] std::vector<Epc> joined_tags() const;
   void estimate_electrical_lengths();
@@ -90,7 +98,9 @@ class JointSegment {
 
   bool started_ = false;
   double next_start_arc_V_ = 0.0;
-  double runner_up_cost_ = 0.0;   // of the best start at another scale, above the best
+  double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
+  double correlation_length_m_;
+  double scale_walk_per_sqrt_m_, rotation_walk_rad_per_sqrt_m_;  // of the odometry, as its corrections show
   double knot_spacing_V_ = 1.0;
   JointState shared_;             // tags stand in tags_
   JointCovariance covariance_;

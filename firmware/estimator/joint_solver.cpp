@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/assert.hpp"
+#include "base/units.hpp"
 #include "estimator/chain_whitening.hpp"
 #include "estimator/path_prior.hpp"
 
@@ -178,6 +179,20 @@ double total_cost(const JointProblem& problem, const JointState& state) {
   }
   const SharedLayout layout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   return cost + add_path_prior(problem, state, layout, nullptr, nullptr);
+}
+
+double evidence(const JointProblem& problem, const JointState& state) {
+  // A uniform phase has density 1 / (2 pi); costs leave out the Gaussian's sqrt(2 pi).
+  const double uniform_cost = std::log(kTwoPi) - 0.5 * std::log(kTwoPi);
+  constexpr double kLogPlaces = 11.5;  // about 1e5 cells of the near-field grid in reach of a tag's reads
+  double sum = 0.0;
+  WhitenedTag whitened;
+  for (std::size_t t = 0; t < problem.reads.size(); ++t) {
+    whiten(problem.reads[t], problem, state, state.tags[t], false, whitened);
+    sum += uniform_cost * static_cast<double>(problem.reads[t].size()) - whitened.cost - 0.5 * whitened.log_variance - kLogPlaces;
+  }
+  const SharedLayout layout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
+  return sum - add_path_prior(problem, state, layout, nullptr, nullptr);
 }
 
 SolverReport solve(const JointProblem& problem, const SolverOptions& options, JointState& state) {

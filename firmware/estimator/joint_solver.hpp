@@ -54,6 +54,11 @@ struct TagCoupling {
 };
 [[nodiscard]] TagCoupling tag_coupling(const JointProblem& problem, const JointState& state);
 
+// What the reads of the placed tags are worth: ln of (likelihood of this geometry / likelihood of
+// phases that tell nothing), less what a search over so many places finds in noise. Positive:
+// believable; the difference between two states of the same reads is their ln likelihood ratio.
+[[nodiscard]] double evidence(const JointProblem& problem, const JointState& state);
+
 // Robust cost of everything at a state (what solve() minimises).
 [[nodiscard]] double total_cost(const JointProblem& problem, const JointState& state);
 

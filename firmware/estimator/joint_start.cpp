@@ -41,7 +41,8 @@ double power_of(const JointProblem& problem, const JointState& state, const std:
   for (const std::size_t t : tags) {
     const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[t], state, beams, false, o.max_reads);
     const auto peaks = search_near_field(reads, spectrum_options(reads, o.coarse_cell_m, o, 1));
-    if (!peaks.empty()) power += peaks[0].power;
+    // The best of many cells is high in noise too: ln(cells), since a cell's power is exponential.
+    if (!peaks.empty()) power += peaks[0].power - std::log(std::max(1.0, peaks[0].cells));
   }
   return power;
 }
@@ -124,16 +125,17 @@ StartCandidate refine(const JointProblem& problem, const JointState& blank, doub
   c.state.log_scale = log_scale;
   place_tags(p, beams, o, false, c.state);
   estimate_port_offsets(p, c.state);
-  c.cost = solve(p, {.max_iterations = 8}, c.state).cost;
+  double cost = solve(p, {.max_iterations = 8}, c.state).cost;
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     JointState again = c.state;
     place_tags(p, beams, o, true, again);
-    const double cost = solve(p, {.max_iterations = 10}, again).cost;
-    if (cost >= c.cost) break;
-    c.cost = cost;
+    const double again_cost = solve(p, {.max_iterations = 10}, again).cost;
+    if (again_cost >= cost) break;
+    cost = again_cost;
     c.state = again;
   }
+  c.evidence = evidence(p, c.state);
   return c;
 }
 
@@ -162,10 +164,10 @@ std::vector<StartCandidate> find_starts(const JointProblem& problem, const Joint
     whole.ports = c.state.ports;
     whole.knots = c.state.knots;
     for (std::size_t i = 0; i < used.size(); ++i) whole.tags[used[i]] = c.state.tags[i];
-    found.push_back({std::move(whole), used, c.cost});
+    found.push_back({std::move(whole), used, c.evidence});
   }
   std::stable_sort(found.begin(), found.end(),
-                   [](const StartCandidate& a, const StartCandidate& b) { return a.cost < b.cost; });
+                   [](const StartCandidate& a, const StartCandidate& b) { return a.evidence > b.evidence; });
   return found;
 }
 

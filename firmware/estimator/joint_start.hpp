@@ -17,13 +17,13 @@ struct StartOptions {
   double range_max_m = 4.0;
   std::size_t first_tags = 3, all_tags = 8;  // scales are sifted with the first, judged with all
   std::size_t max_reads = 32;                // per tag
-  std::size_t candidates = 4;
+  std::size_t candidates = 5;
 };
 
 struct StartCandidate {
   JointState state;                // tags that were not used keep their state
   std::vector<std::size_t> used;   // tags that took part
-  double cost = 0.0;               // comparable between candidates of one call
+  double evidence = 0.0;           // of the tags that took part, see joint_solver.hpp
 };
 
 // Candidates with distinct scales, best first. `state` brings priors (lever arms, electrical

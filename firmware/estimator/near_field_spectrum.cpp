@@ -12,6 +12,7 @@ namespace {
 constexpr int kSide = 4;                         // a block is 4 x 4 x 4 cells,
 constexpr int kCells = kSide * kSide * kSide;    // evaluated together
 constexpr std::size_t kMaxGroups = 8;
+constexpr float kFarRange_m = 3.0F;              // from here on cells may be twice as wide
 
 struct Block {
   alignas(64) std::array<float, kCells> x, y, z;
@@ -81,13 +82,14 @@ SpectrumPeak strongest(const Block& block, std::span<const SpectrumRead> reads,
       power[i] += inverse_count[g] * (sum.c[i] * sum.c[i] + sum.s[i] * sum.s[i]);
   }
   const auto best = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin());
-  return {Eigen::Vector3d(block.x[best], block.y[best], block.z[best]), power[best]};
+  return {Eigen::Vector3d(block.x[best], block.y[best], block.z[best]), power[best], 0.0};
 }
 
 // Is the block's centre where the antennas could have read it from?
-bool in_beam(const Eigen::Vector3f& centre, std::span<const SpectrumRead> reads, const SpectrumOptions& o) {
+bool in_beam(const Eigen::Vector3f& centre, const Eigen::Vector3f& cell, std::span<const SpectrumRead> reads,
+             const SpectrumOptions& o) {
   const std::size_t stride = std::max<std::size_t>(1, reads.size() / 16);
-  const float slack = 0.5F * kSide * static_cast<float>(o.cell_m.norm());  // half the block's diagonal
+  const float slack = 0.5F * kSide * cell.norm();  // half the block's diagonal
   const float cosine = std::cos(static_cast<float>(o.beam_half_angle_rad));
   int seen = 0, asked = 0;
   for (std::size_t i = 0; i < reads.size(); i += stride, ++asked) {
@@ -143,15 +145,31 @@ std::vector<SpectrumPeak> sift(std::span<const SpectrumRead> reads, const Spectr
   const Eigen::Vector3f cell = options.cell_m.cast<float>();
   const Eigen::Vector3f step = kSide * cell;
   const std::array<float, kMaxGroups> inverse_count = inverse_counts(reads);
+  const Eigen::Vector3f middle = 0.5F * (b.low + b.high);
   std::vector<SpectrumPeak> peaks;
   Block block;
-  for (float x = first.x(); x < last.x(); x += step.x())
-    for (float y = first.y(); y < last.y(); y += step.y())
-      for (float z = first.z(); z < last.z(); z += step.z()) {
+  const auto evaluate = [&](const Eigen::Vector3f& corner, const Eigen::Vector3f& block_cell) {
+    fill(block, corner, block_cell);
+    peaks.push_back(strongest(block, reads, inverse_count));
+  };
+  // The aperture resolves an angle: cells twice as wide do where the range is twice the usual one.
+  const Eigen::Vector3f coarse = 2.0F * step;
+  for (float x = first.x(); x < last.x(); x += coarse.x())
+    for (float y = first.y(); y < last.y(); y += coarse.y())
+      for (float z = first.z(); z < last.z(); z += coarse.z()) {
         const Eigen::Vector3f corner(x, y, z);
-        if (!in_beam(corner + 0.5F * step, reads, options)) continue;
-        fill(block, corner, cell);
-        peaks.push_back(strongest(block, reads, inverse_count));
+        const Eigen::Vector3f centre = corner + step;
+        if (!in_beam(centre, 2.0F * cell, reads, options)) continue;
+        if ((centre - middle).norm() > kFarRange_m) {
+          evaluate(corner, 2.0F * cell);
+          continue;
+        }
+        for (int octant = 0; octant < 8; ++octant) {
+          const Eigen::Vector3f part(static_cast<float>(octant & 1), static_cast<float>((octant >> 1) & 1),
+                                     static_cast<float>(octant >> 2));
+          const Eigen::Vector3f own = corner + part.cwiseProduct(step);
+          if (in_beam(own + 0.5F * step, cell, reads, options)) evaluate(own, cell);
+        }
       }
   return peaks;
 }
@@ -175,6 +193,7 @@ std::vector<SpectrumPeak> search_near_field(std::span<const SpectrumRead> reads,
   if (reads.empty()) return {};
   const std::vector<SpectrumRead> some = thinned(reads, options.sifting_reads);
   std::vector<SpectrumPeak> peaks = sift(some, options);
+  for (SpectrumPeak& p : peaks) p.cells = static_cast<double>(peaks.size()) * kCells;
   if (some.size() < reads.size()) {
     constexpr std::size_t kJudgedPerPeak = 12;
     const std::size_t judged = std::min(peaks.size(), kJudgedPerPeak * static_cast<std::size_t>(options.max_peaks));

@@ -31,6 +31,7 @@ struct SpectrumPeak {
   // Sum over groups of |sum of unit phasors|^2 / reads: the log-likelihood ratio of "a wave from
   // here" against noise, up to the noise's concentration. At most the number of reads.
   double power = 0.0;
+  double cells = 0.0;  // that were searched, the same for all peaks of one search
 };
 
 // The spacing that loses at most a radian at the ends of the aperture, per axis: fine along the

@@ -12,24 +12,28 @@
 namespace rfmvo {
 namespace {
 
-constexpr int kGrid = 24;
-constexpr double kGridMin_rad = 0.05, kGridRatio = 1.16;  // 0.05 .. 1.5 rad, log-spaced
+constexpr int kGrid = 13;
+constexpr double kGridMin_rad = 0.06, kGridRatio = 1.3;  // 0.06 .. 1.4 rad, log-spaced
 
 double grid_rad(int i) { return kGridMin_rad * std::pow(kGridRatio, i); }
 
 using LogLikelihood = std::array<double, kGrid>;
 
 // Restricted likelihood: the four unknowns of the tag are integrated out (-1/2 ln det J^T J).
+double restricted_log_likelihood(const JointProblem& problem, const JointState& state, std::size_t t,
+                                 const TagState& tag, WhitenedTag& whitened) {
+  whiten(problem.reads[t], problem, state, tag, true, whitened);
+  Eigen::Matrix4d H = 1e-3 * Eigen::Matrix4d::Identity();
+  for (const WhitenedRow& row : whitened.rows) H += row.weight * row.tag * row.tag.transpose();
+  return -whitened.cost - 0.5 * whitened.log_variance - 0.5 * std::log(H.determinant());
+}
+
 LogLikelihood of_tag(const JointProblem& problem, const JointState& state, std::size_t t, WhitenedTag& whitened) {
   LogLikelihood l{};
   TagState tag = state.tags[t];
   for (int i = 0; i < kGrid; ++i) {
     tag.structured_sigma_rad = grid_rad(i);
-    whiten(problem.reads[t], problem, state, tag, true, whitened);
-    Eigen::Matrix4d H = 1e-3 * Eigen::Matrix4d::Identity();
-    for (const WhitenedRow& row : whitened.rows) H += row.weight * row.tag * row.tag.transpose();
-    l[static_cast<std::size_t>(i)] =
-        -whitened.cost - 0.5 * whitened.log_variance - 0.5 * std::log(H.determinant());
+    l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, state, t, tag, whitened);
   }
   return l;
 }
@@ -69,6 +73,27 @@ void estimate_structured_strength(const JointProblem& problem, const StrengthOpt
       tags[t][static_cast<std::size_t>(i)] += log_normal(grid_rad(i), pooled, options.tag_log_sigma);
     state.tags[t].structured_sigma_rad = std::max(posterior_rad(tags[t]), options.floor_rad);
   }
+}
+
+double estimate_correlation_length(const JointProblem& problem, const JointState& state, double usual_m) {
+  constexpr std::array<double, 6> kLengths_m{0.03, 0.045, 0.065, 0.095, 0.14, 0.2};
+  constexpr double kSiteLogSigma = 0.5;
+  std::array<double, kLengths_m.size()> l{};
+  WhitenedTag whitened;
+  JointProblem p = problem;
+  for (std::size_t i = 0; i < l.size(); ++i) {
+    p.correlation_length_m = kLengths_m[i];
+    l[i] = log_normal(kLengths_m[i], usual_m, kSiteLogSigma);
+    for (std::size_t t = 0; t < p.reads.size(); ++t)
+      l[i] += restricted_log_likelihood(p, state, t, state.tags[t], whitened);
+  }
+  const double top = *std::max_element(l.begin(), l.end());
+  double sum = 0.0, mean = 0.0;
+  for (std::size_t i = 0; i < l.size(); ++i) {
+    sum += std::exp(l[i] - top);
+    mean += std::exp(l[i] - top) * std::log(kLengths_m[i]);
+  }
+  return std::exp(mean / sum);
 }
 
 }  // namespace rfmvo

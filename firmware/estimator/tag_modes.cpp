@@ -38,6 +38,29 @@ Eigen::Matrix4d conditional_covariance(const JointProblem& one, const JointState
   return H.inverse();
 }
 
+// Local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
+std::vector<TagMode> refine_all(const JointProblem& one, const JointState& state, const TagState& like,
+                                const std::vector<Eigen::Vector3d>& places) {
+  JointState local = state;
+  std::vector<TagMode> modes;
+  for (const Eigen::Vector3d& place : places) {
+    TagState tag = like;
+    tag.p_W_X = place;
+    tag.offset_rad = best_offset(one, state, tag);
+    local.tags = {tag};
+    const SolverReport report = solve(one, {.max_iterations = 10, .shared_fixed = true}, local);
+    const bool known = std::any_of(modes.begin(), modes.end(), [&](const TagMode& m) {
+      return (m.tag.p_W_X - local.tags[0].p_W_X).norm() < kSameMode_m;
+    });
+    if (known || !local.tags[0].p_W_X.allFinite()) continue;
+    modes.push_back({local.tags[0], conditional_covariance(one, state, local.tags[0]), report.cost, 0.0});
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.cost < b.cost; });
+  while (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove) modes.pop_back();
+  weigh_modes(modes);
+  return modes;
+}
+
 }  // namespace
 
 void weigh_modes(std::vector<TagMode>& modes) {
@@ -77,28 +100,22 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
                                 std::size_t max_reads) {
   JointProblem one = problem;
   one.reads = {problem.reads[index]};
-  JointState local = state;
   const std::vector<SpectrumRead> reads = spectrum_reads(one.reads[0], state, beams, coherent, max_reads);
   constexpr double kFinest_m = 0.06, kWidest_m = 0.2;
   options.cell_m = suitable_cell(reads, kFinest_m, kWidest_m);
   const std::vector<SpectrumPeak> peaks = search_near_field(reads, options);
-  std::vector<TagMode> modes;
-  for (const SpectrumPeak& peak : peaks) {
-    TagState tag = state.tags[index];
-    tag.p_W_X = peak.p_W_X;
-    tag.offset_rad = best_offset(one, state, tag);
-    local.tags = {tag};
-    const SolverReport report = solve(one, {.max_iterations = 10, .shared_fixed = true}, local);
-    const bool known = std::any_of(modes.begin(), modes.end(), [&](const TagMode& m) {
-      return (m.tag.p_W_X - local.tags[0].p_W_X).norm() < kSameMode_m;
-    });
-    if (known || !local.tags[0].p_W_X.allFinite()) continue;
-    modes.push_back({local.tags[0], conditional_covariance(one, state, local.tags[0]), report.cost, 0.0});
-  }
-  std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.cost < b.cost; });
-  while (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove) modes.pop_back();
-  weigh_modes(modes);
-  return modes;
+  std::vector<Eigen::Vector3d> places;
+  for (const SpectrumPeak& peak : peaks) places.push_back(peak.p_W_X);
+  return refine_all(one, state, state.tags[index], places);
+}
+
+std::vector<TagMode> refresh_modes(const JointProblem& problem, std::size_t index, const JointState& state,
+                                   const std::vector<TagMode>& modes) {
+  JointProblem one = problem;
+  one.reads = {problem.reads[index]};
+  std::vector<Eigen::Vector3d> places;
+  for (const TagMode& mode : modes) places.push_back(mode.tag.p_W_X);
+  return refine_all(one, state, state.tags[index], places);
 }
 
 }  // namespace rfmvo

@@ -35,4 +35,8 @@ void weigh_modes(std::vector<TagMode>& modes);
                                               const BeamModel& beams, SpectrumOptions options, bool coherent,
                                               std::size_t max_reads);
 
+// The same modes after the shared states have moved: each refined from where it was, no new search.
+[[nodiscard]] std::vector<TagMode> refresh_modes(const JointProblem& problem, std::size_t index,
+                                                 const JointState& state, const std::vector<TagMode>& modes);
+
 }  // namespace rfmvo

@@ -13,10 +13,10 @@ namespace {
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 constexpr double kInitialDamping = 1e-4;
-constexpr double kMinDamping = 1e-8;      // keeps a free gauge solvable
+constexpr double kMinDamping = 1e-8;  // keeps a free gauge solvable
 constexpr double kMaxDamping = 1e4;
-constexpr double kCostDone = 1e-3;        // relative: a further step changes poses by less than their noise
-constexpr double kBehindCost_px2 = 1e4;
+constexpr double kCostDone = 1e-3;       // relative: a further step changes poses by less than their noise
+constexpr double kBehindCost_px2 = 1e4;  // of a point behind a camera: never better than any visible outlier
 
 class BundleSolver {
  public:
@@ -90,14 +90,16 @@ class BundleSolver {
     if (!r.in_front) return;
     const double w = huber_weight(r.error_px.norm(), options_.huber_px);
     const Eigen::Matrix<double, 2, 3> J_point = r.d_camera_point * R[v];
-    H_point_[p].noalias() += w * J_point.transpose() * J_point;
-    b_point_[p].noalias() -= w * J_point.transpose() * r.error_px;
+    const Eigen::Matrix<double, 2, 3> weighted = w * J_point;
+    H_point_[p].noalias() += weighted.transpose() * J_point;
+    b_point_[p].noalias() -= weighted.transpose() * r.error_px;
     if (slot_[v] < 0) return;
     const auto s = static_cast<std::size_t>(slot_[v]);
     const Eigen::Matrix<double, 2, 6> J_pose = d_pose(r, p_C);
-    H_view_[s].noalias() += w * J_pose.transpose() * J_pose;
-    b_view_[s].noalias() -= w * J_pose.transpose() * r.error_px;
-    W_[k].noalias() = w * J_pose.transpose() * J_point;
+    const Eigen::Matrix<double, 2, 6> weighted_pose = w * J_pose;
+    H_view_[s].noalias() += weighted_pose.transpose() * J_pose;
+    b_view_[s].noalias() -= weighted_pose.transpose() * r.error_px;
+    W_[k].noalias() = weighted_pose.transpose() * J_point;
   }
 
   // Solves for step_view_ and step_point_ at this damping; false if the system is not positive definite.
@@ -169,7 +171,7 @@ class BundleSolver {
   std::vector<Vector6d> b_view_;
   std::vector<Eigen::Matrix3d> H_point_, H_inverse_;
   std::vector<Eigen::Vector3d> b_point_, step_point_;
-  std::vector<Matrix63d> W_;        // one per observation: view by point
+  std::vector<Matrix63d> W_;  // one per observation: view by point
   Eigen::MatrixXd S_;
   Eigen::VectorXd step_view_;
 };

@@ -7,10 +7,10 @@
 namespace rfmvo {
 namespace {
 
-constexpr int kFastThreshold = 20;        // Rosten's usual value; noise of a cheap sensor is 2..4 grey levels
-constexpr int kFastThresholdFaint = 7;    // as ORB-SLAM's second try, for cells without a strong corner
-constexpr int kBorder_px = 10;            // the KLT window must lie inside the image
-constexpr double kWellFilled = 0.6;       // of the cells: no second try for the faint ones
+constexpr int kFastThreshold = 20;      // Rosten's usual value; noise of a cheap sensor is 2..4 grey levels
+constexpr int kFastThresholdFaint = 7;  // as ORB-SLAM's second try, for cells without a strong corner
+constexpr int kBorder_px = 10;          // the KLT window must lie inside the image
+constexpr double kWellFilled = 0.6;     // of the cells: no second try for the faint ones
 
 struct Grid {
   int size_px, columns, rows;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/units.hpp"
-#include "vision/bundle_adjustment.hpp"
 #include "vision/motion_solver.hpp"
 #include "vision/reprojection.hpp"
 #include "vision/triangulation.hpp"
@@ -17,14 +16,19 @@ constexpr double kMinFlow_rad = 18.0 / 520.0;
 constexpr double kViewFlow_rad = kMinFlow_rad / 4.0;  // a view to keep on the way
 constexpr double kMinRotationResidual_px = 1.0;       // twice what KLT noise and a poor calibration leave
 constexpr std::size_t kMinPairs = 40;
-constexpr double kMinCommon = 0.5;                    // of the reference's tracks
+constexpr double kMinCommon = 0.5;  // of the reference's tracks
 constexpr std::size_t kMaxViews = 12;
-constexpr double kRivalScore = 0.7;                   // of the best: worth building
+constexpr double kRivalScore = 0.7;  // of the best: worth building
 constexpr std::size_t kMaxRivals = 4;
-constexpr double kRivalCost = 1.25;                   // the runner-up must be this much worse, or be the same pose
+constexpr double kRivalCost = 1.25;  // the runner-up must be this much worse, or be the same pose
 constexpr double kSamePose_rad = 2.0 * kPi / 180.0;
-constexpr double kMinInliers = 0.6;                   // of the pairs
+constexpr double kMinInliers = 0.6;  // of the pairs
 constexpr double kMaxMeanCost_px2 = 2.0;
+constexpr std::size_t kMinPoints = kMinPairs / 2;
+constexpr double kMinPointParallax = 0.3;  // of the median's gate: far points may have less than the median
+constexpr double kViewsGate = 1.5;         // of the gate: more views than two, as many chances to exceed it
+constexpr double kLooseGate = 4.0;         // of the gate, before the first adjustment
+constexpr double kBundleHuber_px = 1.0;
 constexpr int kBundleIterations = 15;
 
 double median(std::vector<double> values) {
@@ -69,7 +73,7 @@ std::vector<Initialiser::Pair> Initialiser::common(const View& view, std::span<c
   return pairs;
 }
 
-double Initialiser::median_flow_rad(const std::vector<Pair>& pairs) const {
+double Initialiser::median_flow_rad(const std::vector<Pair>& pairs) {
   std::vector<double> flows;
   for (const Pair& pair : pairs) flows.push_back((pair.second.normalised - pair.first.normalised).norm());
   return median(std::move(flows));
@@ -88,7 +92,7 @@ std::optional<Map> Initialiser::on(DeviceTime time, const Pyramid& pyramid, std:
   std::vector<Pair> pairs;
   while (!views_.empty()) {
     pairs = common(views_.front(), tracks);
-    const double least = std::max(static_cast<double>(kMinPairs), kMinCommon * static_cast<double>(views_.front().tracks.size()));
+    const double least = std::max(1.0 * kMinPairs, kMinCommon * static_cast<double>(views_.front().tracks.size()));
     if (static_cast<double>(pairs.size()) >= least) break;
     views_.erase(views_.begin());
   }
@@ -102,6 +106,17 @@ std::optional<Map> Initialiser::on(DeviceTime time, const Pyramid& pyramid, std:
   }
   remember(std::move(current));
   return std::nullopt;
+}
+
+// The best is clear if every rival is clearly worse or ends at the same pose.
+bool Initialiser::is_clear(const std::vector<Candidate>& candidates) {
+  const Candidate& best = candidates.front();
+  for (const Candidate& rival : candidates) {
+    const Eigen::Quaterniond& a = best.map.keyframes.front().T_C_V.R_C_V;
+    const bool same = a.angularDistance(rival.map.keyframes.front().T_C_V.R_C_V) < kSamePose_rad;
+    if (!same && rival.cost_per_observation_px2 < kRivalCost * best.cost_per_observation_px2) return false;
+  }
+  return true;
 }
 
 std::optional<Map> Initialiser::attempt(const std::vector<Pair>& pairs, const View& current) {
@@ -119,15 +134,9 @@ std::optional<Map> Initialiser::attempt(const std::vector<Pair>& pairs, const Vi
     return a.cost_per_observation_px2 < b.cost_per_observation_px2;
   });
   Candidate& best = candidates.front();
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    const ViewPose& a = best.map.keyframes.front().T_C_V;
-    const ViewPose& b = candidates[i].map.keyframes.front().T_C_V;
-    const bool same = a.R_C_V.angularDistance(b.R_C_V) < kSamePose_rad;
-    if (!same && candidates[i].cost_per_observation_px2 < kRivalCost * best.cost_per_observation_px2) return std::nullopt;
-  }
-  if (best.points < kMinInliers * static_cast<double>(pairs.size())) return std::nullopt;
-  if (best.parallax_rad < options_.min_parallax_rad) return std::nullopt;
-  if (best.cost_per_observation_px2 > kMaxMeanCost_px2) return std::nullopt;
+  const bool good = best.points >= kMinInliers * static_cast<double>(pairs.size()) &&
+                    best.parallax_rad >= options_.min_parallax_rad && best.cost_per_observation_px2 <= kMaxMeanCost_px2;
+  if (!good || !is_clear(candidates)) return std::nullopt;
   return std::move(best.map);
 }
 
@@ -137,33 +146,18 @@ std::optional<Initialiser::Candidate> Initialiser::build(const TwoViewHypothesis
   for (const View& view : views_) views.push_back(&view);
   views.push_back(&current);
   BundleProblem bundle;
-  std::vector<std::int64_t> ids;
+  std::vector<std::int64_t> ids;  // landmarks of the bundle's points
   for (const Pair& pair : pairs) {
     const SightLine lines[2] = {{ViewPose{}, pair.first.normalised}, {hypothesis.T_C2_C1, pair.second.normalised}};
-    const auto p = triangulate(lines, 0.3 * options_.min_parallax_rad, options_.focal_px, options_.gate_px);
+    const auto p =
+        triangulate(lines, kMinPointParallax * options_.min_parallax_rad, options_.focal_px, options_.gate_px);
     if (!p) continue;
     bundle.points_V.push_back(*p);
     ids.push_back(pair.first.landmark);
   }
-  if (ids.size() < kMinPairs / 2) return std::nullopt;
-  ViewPose pose;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    std::vector<MotionObservation> seen;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (const Track* t = find_track(views[v]->tracks, ids[i])) seen.push_back({bundle.points_V[i], t->normalised});
-    }
-    if (v + 1 == views.size()) pose = hypothesis.T_C2_C1;
-    if (v > 0) pose = solve_motion(seen, pose, {options_.focal_px, options_.gate_px, 4.0 * options_.gate_px}).T_C_V;
-    bundle.views.push_back({pose, v == 0});
-  }
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      const Track* t = find_track(views[v]->tracks, ids[i]);
-      if (t) bundle.observations.push_back({static_cast<int>(v), static_cast<int>(i), t->normalised});
-    }
-  }
-  const BundleReport report = adjust_bundle(bundle, {options_.focal_px, 1.0, kBundleIterations});
-
+  if (ids.size() < kMinPoints) return std::nullopt;
+  add_views(views, ids, hypothesis.T_C2_C1, bundle);
+  const BundleReport report = adjust_bundle(bundle, {options_.focal_px, kBundleHuber_px, kBundleIterations});
   Candidate candidate;
   candidate.cost_per_observation_px2 = report.final_cost / static_cast<double>(bundle.observations.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -173,24 +167,52 @@ std::optional<Initialiser::Candidate> Initialiser::build(const TwoViewHypothesis
       candidate.map.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});
     }
   }
-  std::vector<double> parallaxes;
+  locate(ids, candidate);
+  if (candidate.points < static_cast<int>(kMinPoints)) return std::nullopt;
+  normalise(candidate.map);
+  return candidate;
+}
+
+// Poses of the views between the first and the last from the points that these two gave, one after the other.
+void Initialiser::add_views(const std::vector<const View*>& views, const std::vector<std::int64_t>& ids,
+                            const ViewPose& last, BundleProblem& bundle) const {
+  const MotionOptions loose{options_.focal_px, options_.gate_px, kLooseGate * options_.gate_px};
+  ViewPose pose;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::vector<MotionObservation> seen;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (const Track* t = find_track(views[v]->tracks, ids[i])) seen.push_back({bundle.points_V[i], t->normalised});
+    }
+    if (v + 1 == views.size()) pose = last;
+    if (v > 0) pose = solve_motion(seen, pose, loose).T_C_V;
+    bundle.views.push_back({pose, v == 0});
+  }
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    Landmark& landmark = candidate.map.landmarks[ids[i]];
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const Track* t = find_track(views[v]->tracks, ids[i]);
+      if (t) bundle.observations.push_back({static_cast<int>(v), static_cast<int>(i), t->normalised});
+    }
+  }
+}
+
+// The landmarks' places from the adjusted poses; those that do not fit all their views stay without one.
+void Initialiser::locate(const std::vector<std::int64_t>& ids, Candidate& candidate) const {
+  std::vector<double> parallaxes;
+  for (const std::int64_t id : ids) {
+    Landmark& landmark = candidate.map.landmarks[id];
     std::vector<SightLine> lines;
     for (const KeyframeObservation& o : landmark.observations) {
       lines.push_back({candidate.map.find(o.keyframe)->T_C_V, o.normalised});
     }
-    const auto p = triangulate(lines, 0.3 * options_.min_parallax_rad, options_.focal_px, 1.5 * options_.gate_px);
+    const auto p = triangulate(lines, kMinPointParallax * options_.min_parallax_rad, options_.focal_px,
+                               kViewsGate * options_.gate_px);
     if (!p) continue;
     landmark.located = true;
     landmark.p_V = *p;
     parallaxes.push_back(parallax(lines.front(), lines.back()));
   }
   candidate.points = static_cast<int>(parallaxes.size());
-  if (parallaxes.size() < kMinPairs / 2) return std::nullopt;
-  candidate.parallax_rad = median(parallaxes);
-  normalise(candidate.map);
-  return candidate;
+  candidate.parallax_rad = median(std::move(parallaxes));
 }
 
 }  // namespace rfmvo

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vision/bundle_adjustment.hpp"
 #include "vision/map.hpp"
 #include "vision/two_view.hpp"
 
@@ -44,10 +45,14 @@ class Initialiser {
   };
 
   [[nodiscard]] static std::vector<Pair> common(const View& view, std::span<const Track> tracks);
-  [[nodiscard]] double median_flow_rad(const std::vector<Pair>& pairs) const;
+  [[nodiscard]] static double median_flow_rad(const std::vector<Pair>& pairs);
   [[nodiscard]] std::optional<Map> attempt(const std::vector<Pair>& pairs, const View& current);
   [[nodiscard]] std::optional<Candidate> build(const TwoViewHypothesis& hypothesis, const std::vector<Pair>& pairs,
                                                const View& current) const;
+  void add_views(const std::vector<const View*>& views, const std::vector<std::int64_t>& ids, const ViewPose& last,
+                 BundleProblem& bundle) const;
+  void locate(const std::vector<std::int64_t>& ids, Candidate& candidate) const;
+  [[nodiscard]] static bool is_clear(const std::vector<Candidate>& candidates);
   void remember(View view);
 
   InitialiserOptions options_;

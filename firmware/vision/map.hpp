@@ -33,7 +33,7 @@ struct Keyframe {
 };
 
 struct Map {
-  std::deque<Keyframe> keyframes;             // ids are consecutive, oldest first
+  std::deque<Keyframe> keyframes;              // ids are consecutive, oldest first
   std::map<std::int64_t, Landmark> landmarks;  // ordered: iteration must not depend on addresses
 
   [[nodiscard]] const Keyframe* find(std::int64_t id) const {

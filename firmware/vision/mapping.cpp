@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kBundleHuber_px = 1.0;
 constexpr int kBundleIterations = 5;
+constexpr double kCullGate = 1.5;       // of the gate: an observation's error after the adjustment
 constexpr std::size_t kGaugeViews = 2;  // VISION design: the oldest 2..5 key frames of a full window stay fixed
 
 struct Window {
@@ -30,7 +31,8 @@ Window gather(const Map& map, std::int64_t first) {
   const std::int64_t oldest = map.keyframes.front().id;
   for (const auto& [id, landmark] : map.landmarks) {
     if (!in_window(landmark, first)) continue;
-    for (const KeyframeObservation& o : landmark.observations) view_of[static_cast<std::size_t>(o.keyframe - oldest)] = 0;
+    for (const KeyframeObservation& o : landmark.observations)
+      view_of[static_cast<std::size_t>(o.keyframe - oldest)] = 0;
   }
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     if (view_of[k] < 0) continue;
@@ -76,7 +78,7 @@ void write_back(Map& map, const Window& w, const MappingOptions& options) {
     landmark.p_V = w.bundle.points_V[p];
     std::erase_if(landmark.observations, [&](const KeyframeObservation& o) {
       const Reprojection r = reproject(map.find(o.keyframe)->T_C_V * landmark.p_V, o.normalised, options.focal_px);
-      return !r.in_front || r.error_px.norm() > 1.5 * options.gate_px;
+      return !r.in_front || r.error_px.norm() > kCullGate * options.gate_px;
     });
     if (landmark.observations.size() < 2) landmark.located = false;
   }
@@ -90,7 +92,8 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
     Landmark& landmark = map.landmarks[track.landmark];
     if (landmark.located || landmark.observations.empty()) continue;
     lines.clear();
-    for (const KeyframeObservation& o : landmark.observations) lines.push_back({map.find(o.keyframe)->T_C_V, o.normalised});
+    for (const KeyframeObservation& o : landmark.observations)
+      lines.push_back({map.find(o.keyframe)->T_C_V, o.normalised});
     lines.push_back({T_C_V, track.normalised});
     if (const auto p = triangulate(lines, options.min_parallax_rad, options.focal_px, options.gate_px)) {
       landmark.located = true;

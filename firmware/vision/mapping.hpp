@@ -11,8 +11,8 @@ struct MappingOptions {
   double focal_px = 500.0;
   double gate_px = 2.0;
   double min_parallax_rad = 0.0175;
-  int window = 10;    // newest key frames that the adjustment moves
-  int archive = 40;   // key frames kept in all
+  int window = 10;   // newest key frames that the adjustment moves
+  int archive = 40;  // key frames kept in all
 };
 
 // Locates followed landmarks that have parallax by now, with the current view as the last sight line.

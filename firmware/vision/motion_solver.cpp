@@ -12,10 +12,10 @@ namespace rfmvo {
 namespace {
 
 constexpr int kMaxIterations = 10;
-constexpr double kStepDone = 1e-7;      // rad and units of V: far below a thousandth of a pixel
+constexpr double kStepDone = 1e-7;  // rad and units of V: far below a thousandth of a pixel
 constexpr double kInitialDamping = 1e-4;
 constexpr double kBehindCost_px2 = 1e4;  // of a point behind the camera: never better than any visible outlier
-// Two thirds of a pixel-quantised track's scatter is the least that is believed (KLT noise, 0.1..0.3 px).
+// The least scatter that is believed: KLT noise is 0.1..0.3 px.
 constexpr double kSigmaFloor_px = 0.15;
 
 struct Normal {
@@ -39,8 +39,9 @@ Normal linearise(std::span<const MotionObservation> observations, const std::vec
     const double error = r.error_px.norm();
     const double w = huber_weight(error, options.huber_px);
     const Eigen::Matrix<double, 2, 6> J = d_pose(r, p_C);
-    n.H.noalias() += w * J.transpose() * J;
-    n.b.noalias() -= w * J.transpose() * r.error_px;
+    const Eigen::Matrix<double, 2, 6> weighted = w * J;
+    n.H.noalias() += weighted.transpose() * J;
+    n.b.noalias() -= weighted.transpose() * r.error_px;
     n.cost += huber_cost(error, options.huber_px);
   }
   return n;

@@ -23,8 +23,8 @@ struct MotionOptions {
 struct MotionSolution {
   ViewPose T_C_V;
   int inliers = 0;
-  double rms_px = 0.0;              // of the inliers
-  std::vector<double> error_px;     // one per observation; behind the camera: infinity
+  double rms_px = 0.0;                     // of the inliers
+  std::vector<double> error_px;            // one per observation; behind the camera: infinity
   Matrix6d covariance = Matrix6d::Zero();  // of the step of moved(), from the inliers' own scatter; zero if < 6 inliers
 };
 

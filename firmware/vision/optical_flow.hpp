@@ -18,8 +18,7 @@ struct Followed {
 };
 
 // Follows `from_px` (in `from`) to `to`, starting at `predicted_px`; one result per point.
-[[nodiscard]] std::vector<Followed> follow(const Pyramid& from, const Pyramid& to,
-                                           std::span<const cv::Point2f> from_px,
+[[nodiscard]] std::vector<Followed> follow(const Pyramid& from, const Pyramid& to, std::span<const cv::Point2f> from_px,
                                            std::span<const cv::Point2f> predicted_px);
 
 }  // namespace rfmvo

@@ -67,8 +67,7 @@ TwoViewHypothesis vote(std::span<const PointPair> pairs, const ViewPose& T_C2_C1
 }
 
 bool same(const ViewPose& a, const ViewPose& b) {
-  return a.R_C_V.angularDistance(b.R_C_V) < kSamePose_rad &&
-         a.t_C_V.dot(b.t_C_V) > std::cos(kSameDirection_rad);
+  return a.R_C_V.angularDistance(b.R_C_V) < kSamePose_rad && a.t_C_V.dot(b.t_C_V) > std::cos(kSameDirection_rad);
 }
 
 }  // namespace

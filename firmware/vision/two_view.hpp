@@ -15,7 +15,7 @@ struct PointPair {
 };
 
 struct TwoViewHypothesis {
-  ViewPose T_C2_C1;  // translation of length 1
+  ViewPose T_C2_C1;    // translation of length 1
   double score = 0.0;  // sum over pairs of gate^2 - error^2, px^2, of those in front of both and inside the gate
   int inliers = 0;
 };

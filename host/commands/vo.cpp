@@ -1,160 +1,127 @@
-// `rfmvo vo DIR`: the odometry alone on a folder of images; path as TUM file, figures against truth.
-#include <Eigen/Geometry>
+// rfmvo vo: the odometry alone on a folder of images; its path as a TUM file, and its error where the
+// folder has a groundtruth.txt (TUM: t tx ty tz qx qy qz qw of T_W_C).
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <optional>
-#include <set>
 #include <sstream>
 
 #include "commands/commands.hpp"
+#include "commands/whole_file.hpp"
+#include "config/config_table.hpp"
+#include "edges/image_folder.hpp"
+#include "edges/text_file.hpp"
+#include "evaluate/alignment.hpp"
 #include "vision/visual_odometry.hpp"
 
 namespace rfmvo {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct TimedImage {
-  DeviceTime time;
-  std::string path;
+struct Options {
+  std::string folder, tum;
+  std::vector<std::string> settings;
+  bool json = false;
 };
 
-struct TruthPose {
-  double time_s;
-  Eigen::Vector3d p_W_C;
-};
-
-struct VoRun {
+struct Run {
   std::vector<CameraPose> poses;
   std::vector<double> cpu_ms;  // of the odometry, per frame, without reading the image
   double total_cpu_s = 0.0;    // with reading
 };
 
-// Fields of each line that is not a comment.
-std::vector<std::vector<std::string>> read_table(const fs::path& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error(path.string() + ": cannot be read");
-  std::vector<std::vector<std::string>> rows;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream words(line);
-    rows.emplace_back(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
-  }
-  return rows;
-}
-
-CameraModel read_camera(const fs::path& path) {
-  constexpr std::size_t kFields = 7;  // fx fy cx cy width height model
-  const auto rows = read_table(path);
-  if (rows.empty() || rows[0].size() < kFields) throw std::runtime_error(path.string() + ": fx fy cx cy width height model expected");
-  const auto& f = rows[0];
-  CameraModel camera;
-  camera.fx_px = std::stod(f[0]), camera.fy_px = std::stod(f[1]);
-  camera.cx_px = std::stod(f[2]), camera.cy_px = std::stod(f[3]);
-  camera.width_px = std::stoi(f[4]), camera.height_px = std::stoi(f[5]);
-  if (f[6] != "none" && f[6] != "radtan") throw std::runtime_error(path.string() + ": unknown model " + f[6]);
-  for (std::size_t i = kFields; i < f.size() && i - kFields < camera.radtan.size(); ++i) camera.radtan[i - kFields] = std::stod(f[i]);
-  return camera;
-}
-
-std::vector<TimedImage> read_images(const fs::path& dir) {
-  std::vector<TimedImage> images;
-  for (const auto& row : read_table(dir / "times.txt")) {
-    if (row.size() < 2) throw std::runtime_error((dir / "times.txt").string() + ": `t filename` expected");
-    images.push_back({DeviceTime{Duration::from_seconds(std::stod(row[0])).ns}, (dir / row[1]).string()});
-  }
-  return images;
-}
-
-std::vector<TruthPose> read_truth(const fs::path& path) {
-  std::vector<TruthPose> truth;
-  if (!fs::exists(path)) return truth;
-  for (const auto& row : read_table(path)) {
-    if (row.size() >= 4) truth.push_back({std::stod(row[0]), {std::stod(row[1]), std::stod(row[2]), std::stod(row[3])}});
-  }
-  return truth;
-}
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-Frame to_frame(const TimedImage& image, std::int64_t sequence) {
-  const cv::Mat grey = cv::imread(image.path, cv::IMREAD_GRAYSCALE);
-  if (grey.empty()) throw std::runtime_error(image.path + ": not an image");
-  Frame frame;
-  frame.time = image.time;
-  frame.sequence = sequence;
-  frame.width_px = grey.cols;
-  frame.height_px = grey.rows;
-  frame.grey = std::make_shared<const std::vector<std::uint8_t>>(grey.data, grey.data + grey.total());
-  return frame;
-}
-
-VoRun run(const fs::path& dir) {
-  VisualOdometry odometry(VisionConfig{}, read_camera(dir / "calib.txt"));
-  VoRun result;
-  const double begin = cpu_seconds();
-  for (const TimedImage& image : read_images(dir)) {
-    const Frame frame = to_frame(image, static_cast<std::int64_t>(result.poses.size()));
-    const double before = cpu_seconds();
-    result.poses.push_back(odometry.on(frame));
-    result.cpu_ms.push_back(1e3 * (cpu_seconds() - before));
-  }
-  result.total_cpu_s = cpu_seconds() - begin;
-  return result;
-}
-
-bool has_pose(const CameraPose& p) { return p.status == VoStatus::kTracking || p.status == VoStatus::kDegraded; }
-
 struct PathError {
-  std::size_t poses = 0;
   double rms_m = 0.0;
   double path_m = 0.0;
   double scale_m = 0.0;  // metres per unit of V
 };
 
-// Of the longest segment, after the best similarity transform (Umeyama 1991).
-std::optional<PathError> path_error(const std::vector<CameraPose>& poses, const std::vector<TruthPose>& truth) {
+double cpu_seconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+bool has_pose(const CameraPose& p) { return p.status == VoStatus::kTracking || p.status == VoStatus::kDegraded; }
+
+Result<Config> configured(const std::vector<std::string>& settings) {
+  Config config;
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) return Error{ErrorCode::kMalformed, "expects section.key=value", setting};
+    const Status s = set_value_from_text(config, setting.substr(0, equals), setting.substr(equals + 1));
+    if (!s) return s.error();
+  }
+  return config;
+}
+
+Result<Run> run_odometry(const Options& options) {
+  const auto config = configured(options.settings);
+  if (!config) return config.error();
+  const double begin_s = cpu_seconds();
+  auto folder = ImageFolder::open(options.folder);
+  if (!folder) return folder.error();
+  VisualOdometry odometry(config.value().vision, folder.value()->camera());
+  Run run;
+  while (true) {
+    const auto event = folder.value()->next();
+    if (!event) return event.error();
+    if (!event.value()) break;
+    const Frame* frame = std::get_if<Frame>(&*event.value());
+    if (!frame) continue;
+    const double before_s = cpu_seconds();
+    run.poses.push_back(odometry.on(*frame));
+    run.cpu_ms.push_back(1e3 * (cpu_seconds() - before_s));
+  }
+  run.total_cpu_s = cpu_seconds() - begin_s;
+  return run;
+}
+
+// Empty if there is no such file.
+Result<std::vector<simulate::TruePose>> read_truth(const std::string& path) {
+  std::vector<simulate::TruePose> truth;
+  if (!std::filesystem::exists(path)) return truth;
+  const auto text = read_text_file(path);
+  if (!text) return text.error();
+  std::istringstream stream(text.value());
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream fields(line);
+    double t_s = 0.0;
+    Rigid3 T;
+    auto& q = T.R.coeffs();
+    if (!(fields >> t_s >> T.t.x() >> T.t.y() >> T.t.z() >> q[0] >> q[1] >> q[2] >> q[3]))
+      return Error{ErrorCode::kMalformed, "expects t tx ty tz qx qy qz qw", path + ":" + std::to_string(number)};
+    T.R.normalize();
+    truth.push_back({DeviceTime{Duration::from_seconds(t_s).ns}, T});
+  }
+  return truth;
+}
+
+// Of the longest segment, after the similarity that fits it best.
+std::optional<PathError> path_error(const std::vector<CameraPose>& poses,
+                                    const std::vector<simulate::TruePose>& truth) {
   std::map<std::uint32_t, int> count;
   for (const CameraPose& p : poses) count[p.segment] += has_pose(p);
   if (count.empty() || truth.empty()) return std::nullopt;
-  const auto longest = std::max_element(count.begin(), count.end(), [](auto& a, auto& b) { return a.second < b.second; });
-  std::vector<Eigen::Vector3d> estimate, reference;
+  const auto longest =
+      std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<evaluate::PosePair> pairs;
+  PathError error;
   for (const CameraPose& p : poses) {
     if (!has_pose(p) || p.segment != longest->first) continue;
-    const double t = Duration{p.time.ns}.seconds();
-    const auto near = std::min_element(truth.begin(), truth.end(), [t](const auto& a, const auto& b) {
-      return std::abs(a.time_s - t) < std::abs(b.time_s - t);
-    });
-    constexpr double kSameTime_s = 0.005;
-    if (std::abs(near->time_s - t) > kSameTime_s) continue;
-    estimate.push_back(p.T_V_C.p_V_C);
-    reference.push_back(near->p_W_C);
+    const auto T_W_C = evaluate::truth_at(truth, p.time);
+    if (!T_W_C) continue;
+    if (!pairs.empty()) error.path_m += (T_W_C->t - pairs.back().truth.t).norm();
+    pairs.push_back({{p.T_V_C.R_V_C, p.T_V_C.p_V_C}, *T_W_C});
   }
-  constexpr std::size_t kLeast = 3;
-  if (estimate.size() < kLeast) return std::nullopt;
-  Eigen::Matrix3Xd a(3, estimate.size()), b(3, estimate.size());
-  PathError error;
-  for (std::size_t i = 0; i < estimate.size(); ++i) {
-    a.col(static_cast<Eigen::Index>(i)) = estimate[i];
-    b.col(static_cast<Eigen::Index>(i)) = reference[i];
-    if (i > 0) error.path_m += (reference[i] - reference[i - 1]).norm();
-  }
-  const Eigen::Matrix4d T = Eigen::umeyama(a, b, true);
-  error.poses = estimate.size();
-  error.scale_m = T.topLeftCorner<3, 1>().norm();
-  const Eigen::Matrix3Xd d = ((T.topLeftCorner<3, 3>() * a).colwise() + T.topRightCorner<3, 1>()) - b;
-  error.rms_m = std::sqrt(d.squaredNorm() / static_cast<double>(estimate.size()));
+  const auto alignment = evaluate::align(pairs, {.with_scale = true});
+  if (!alignment) return std::nullopt;
+  error.rms_m = evaluate::position_rmse_m(pairs, *alignment);
+  error.scale_m = alignment->scale;
   return error;
 }
 
@@ -164,32 +131,32 @@ double quantile(std::vector<double> values, double q) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
 }
 
-nlohmann::ordered_json summary(const VoRun& r, const std::optional<PathError>& error) {
-  std::set<std::uint32_t> segments;
-  std::size_t tracked = 0, degraded = 0, first = r.poses.size();
-  for (std::size_t i = 0; i < r.poses.size(); ++i) {
-    if (!has_pose(r.poses[i])) continue;
-    first = std::min(first, i);
-    ++tracked;
-    degraded += r.poses[i].status == VoStatus::kDegraded;
-    segments.insert(r.poses[i].segment);
-  }
-  double sum = 0.0;
-  for (const double ms : r.cpu_ms) sum += ms;
-  const auto n = static_cast<double>(r.poses.size());
+nlohmann::ordered_json figures(const Run& run, const std::optional<PathError>& error) {
+  const auto n = static_cast<double>(std::max<std::size_t>(run.poses.size(), 1));
+  const auto first = std::find_if(run.poses.begin(), run.poses.end(), has_pose);
+  const auto tracked = std::count_if(run.poses.begin(), run.poses.end(), has_pose);
+  std::map<std::uint32_t, int> segments;
   nlohmann::ordered_json j;
-  j["frames"] = r.poses.size();
+  int degraded = 0;
+  double sum_ms = 0.0;
+  for (const CameraPose& p : run.poses) {
+    if (has_pose(p)) ++segments[p.segment];
+    degraded += p.status == VoStatus::kDegraded;
+  }
+  for (const double ms : run.cpu_ms) sum_ms += ms;
+  j["frames"] = run.poses.size();
   j["tracked"] = tracked;
   j["degraded"] = degraded;
-  j["first_pose_frame"] = first;
-  j["first_pose_s"] = first < r.poses.size() ? (r.poses[first].time - r.poses[0].time).seconds() : -1.0;
-  j["tracked_share_after_start"] = first < r.poses.size() ? static_cast<double>(tracked) / (n - static_cast<double>(first)) : 0.0;
   j["segments"] = segments.size();
-  j["cpu_ms_mean"] = n > 0 ? sum / n : 0.0;
-  j["cpu_ms_p50"] = quantile(r.cpu_ms, 0.5);
-  j["cpu_ms_p99"] = quantile(r.cpu_ms, 0.99);
-  j["cpu_ms_max"] = quantile(r.cpu_ms, 1.0);
-  j["cpu_ms_mean_with_reading"] = n > 0 ? 1e3 * r.total_cpu_s / n : 0.0;
+  if (first != run.poses.end()) {
+    j["start_s"] = (first->time - run.poses.front().time).seconds();
+    j["tracked_share_after_start"] = static_cast<double>(tracked) / static_cast<double>(run.poses.end() - first);
+  }
+  j["cpu_ms_mean"] = sum_ms / n;
+  j["cpu_ms_p50"] = quantile(run.cpu_ms, 0.5);
+  j["cpu_ms_p99"] = quantile(run.cpu_ms, 0.99);
+  j["cpu_ms_max"] = quantile(run.cpu_ms, 1.0);
+  j["cpu_ms_mean_with_reading"] = 1e3 * run.total_cpu_s / n;
   if (!error) return j;
   j["ate_m"] = error->rms_m;
   j["path_m"] = error->path_m;
@@ -198,46 +165,50 @@ nlohmann::ordered_json summary(const VoRun& r, const std::optional<PathError>& e
   return j;
 }
 
-void write_tum(const fs::path& path, const std::vector<CameraPose>& poses) {
-  std::ofstream out(path);
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written");
-  out << "# t tx ty tz qx qy qz qw (T_V_C, unscaled)\n" << std::fixed;
-  out.precision(9);
+std::string to_tum(const std::vector<CameraPose>& poses) {
+  std::string text = "# t tx ty tz qx qy qz qw: T_V_C, unscaled; every segment has a V of its own\n";
   for (const CameraPose& p : poses) {
     if (!has_pose(p)) continue;
     const Eigen::Vector3d& t = p.T_V_C.p_V_C;
     const Eigen::Quaterniond& q = p.T_V_C.R_V_C;
-    out << Duration{p.time.ns}.seconds() << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x() << ' ' << q.y()
-        << ' ' << q.z() << ' ' << q.w() << '\n';
+    text += fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", Duration{p.time.ns}.seconds(),
+                        t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
+  return text;
+}
+
+Status run_command(const Options& options) {
+  const auto truth = read_truth(options.folder + "/groundtruth.txt");
+  if (!truth) return truth.error();
+  const auto run = run_odometry(options);
+  if (!run) return run.error();
+  if (!options.tum.empty()) {
+    if (const Status s = write_whole_file(options.tum, to_tum(run.value().poses)); !s) return s;
+  }
+  const auto report = figures(run.value(), path_error(run.value().poses, truth.value()));
+  if (options.json) {
+    fmt::print("{}\n", report.dump(2));
+    return Done{};
+  }
+  for (const auto& [key, value] : report.items()) fmt::print("{:<26} {}\n", key, value.dump());
+  return Done{};
 }
 
 }  // namespace
 
 void add_vo_command(CLI::App& app, int& exit_code) {
-  struct Options {
-    std::string dir, tum;
-    bool json = false;
-  };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("vo", "Run the visual odometry alone on a folder of images");
-  command->add_option("DIR", options->dir, "Folder with images/, times.txt, calib.txt, perhaps groundtruth.txt")->required();
-  command->add_option("--tum", options->tum, "Write the path here (TUM format, unscaled)");
-  command->add_flag("--json", options->json, "Print JSON");
+  command->add_option("folder", options->folder, "Folder with times.txt, calib.txt, images, perhaps groundtruth.txt")
+      ->required();
+  command->add_option("--tum", options->tum, "Write the path to this file (TUM format, unscaled)");
+  command->add_option("--set", options->settings, "A setting, section.key=value");
+  command->add_flag("--json", options->json, "Print the figures as JSON");
   command->callback([options, &exit_code] {
-    try {
-      const VoRun result = run(options->dir);
-      if (!options->tum.empty()) write_tum(options->tum, result.poses);
-      const auto report = summary(result, path_error(result.poses, read_truth(fs::path(options->dir) / "groundtruth.txt")));
-      if (options->json) {
-        std::cout << report.dump(2) << '\n';
-      } else {
-        for (const auto& [key, value] : report.items()) std::cout << key << ' ' << value << '\n';
-      }
-    } catch (const std::exception& e) {
-      std::cerr << "rfmvo vo: " << e.what() << '\n';
-      exit_code = 1;
-    }
+    const Status status = run_command(*options);
+    if (status) return;
+    fmt::print(stderr, "rfmvo vo: {}\n", status.error().text());
+    exit_code = 1;
   });
 }
 

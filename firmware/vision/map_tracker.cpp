@@ -1,0 +1,169 @@
+#include "vision/map_tracker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "vision/feature_tracks.hpp"
+#include "vision/rematching.hpp"
+
+namespace rfmvo {
+namespace {
+
+constexpr double kKeyframeFlow_rad = 20.0 / 520.0;  // VISION design: rotation-compensated, 20 px at f about 520 px
+constexpr double kKeyframeCommon = 0.7;             // VISION design: of the last key frame's tracks
+constexpr double kMotionHuber_px = 0.6;             // VISION design
+constexpr int kMinInliers = 12;                     // fewer: no pose
+constexpr double kMinInlierShare = 0.4;             // of the located tracks: below, no pose
+constexpr int kMaxStrikes = 3;                      // frames above the gate before a track is dropped
+constexpr double kMaxExtrapolation = 3.0;           // frames; a constant velocity is not believed longer
+constexpr double kNearest = 0.1;                    // of the median depth: nearer points are not predicted
+
+}  // namespace
+
+void MapTracker::begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std::int64_t next_landmark) {
+  map_ = std::move(map);
+  tracks_ = std::move(tracks);
+  next_landmark_ = next_landmark;
+  const Keyframe& newest = map_.keyframes.back();
+  const Keyframe& before = map_.keyframes[map_.keyframes.size() - 2];
+  T_C_V_ = newest.T_C_V;
+  motion_ = relative(newest.T_C_V, before.T_C_V);
+  motion_s_ = (newest.time - before.time).seconds();
+  pose_time_ = newest.time;
+  fill_up(pyramid);
+  update_median_depth();
+  previous_ = std::move(pyramid);
+}
+
+const Landmark* MapTracker::located(const Track& track) const {
+  const auto it = map_.landmarks.find(track.landmark);
+  return it != map_.landmarks.end() && it->second.located ? &it->second : nullptr;
+}
+
+ViewPose MapTracker::predict(DeviceTime time) const {
+  const double dt = (time - pose_time_).seconds();
+  const double ratio = motion_s_ > 0.0 ? std::clamp(dt / motion_s_, 0.0, kMaxExtrapolation) : 0.0;
+  return composed({so3_exp(ratio * so3_log(motion_.R_C_V)), ratio * motion_.t_C_V}, T_C_V_);
+}
+
+std::vector<cv::Point2f> MapTracker::predict_tracks(const ViewPose& predicted) const {
+  std::vector<cv::Point2f> result;
+  for (const Track& t : tracks_) {
+    const Landmark* landmark = located(t);
+    const Eigen::Vector3d p_V = landmark ? landmark->p_V : T_C_V_.to_V(median_depth_ * t.normalised.homogeneous());
+    const Eigen::Vector3d p_C = predicted * p_V;
+    result.push_back(t.px);
+    if (p_C.z() < kNearest * median_depth_) continue;
+    const Eigen::Vector2d px = project(options_.camera, p_C.hnormalized());
+    result.back() = {static_cast<float>(px.x()), static_cast<float>(px.y())};
+  }
+  return result;
+}
+
+MotionSolution MapTracker::locate_camera(const ViewPose& predicted, std::vector<Track>& followed) const {
+  std::vector<MotionObservation> seen;
+  std::vector<std::size_t> track_of;
+  for (std::size_t i = 0; i < followed.size(); ++i) {
+    const Landmark* landmark = located(followed[i]);
+    if (!landmark) continue;
+    seen.push_back({landmark->p_V, followed[i].normalised});
+    track_of.push_back(i);
+  }
+  const MotionOptions options{options_.mapping.focal_px, kMotionHuber_px, options_.mapping.gate_px};
+  const auto enough = [&seen](const MotionSolution& m) {
+    return m.inliers >= kMinInliers && m.inliers >= kMinInlierShare * static_cast<double>(seen.size());
+  };
+  MotionSolution s = solve_motion(seen, predicted, options);
+  if (!enough(s)) {
+    MotionSolution global = solve_motion_globally(seen, predicted, options);
+    if (global.inliers > s.inliers) s = std::move(global);
+  }
+  if (!enough(s)) s.inliers = 0;
+  for (std::size_t k = 0; k < track_of.size(); ++k) {
+    int& strikes = followed[track_of[k]].strikes;
+    strikes = s.error_px[k] <= options.gate_px ? 0 : strikes + 1;
+  }
+  return s;
+}
+
+std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyramid) {
+  const ViewPose predicted = predict(time);
+  std::vector<Track> followed = advanced(tracks_, previous_, pyramid, predict_tracks(predicted), options_.camera);
+  MotionSolution s = locate_camera(predicted, followed);
+  if (s.inliers == 0) return std::nullopt;
+  realign(map_, followed, pyramid, s.T_C_V, options_.camera);
+  s = locate_camera(s.T_C_V, followed);
+  if (s.inliers == 0) return std::nullopt;
+
+  motion_ = relative(s.T_C_V, T_C_V_);
+  motion_s_ = (time - pose_time_).seconds();
+  T_C_V_ = s.T_C_V;
+  pose_time_ = time;
+  tracks_ = std::move(followed);
+  std::erase_if(tracks_, [](const Track& t) { return t.strikes >= kMaxStrikes; });
+  locate_landmarks(map_, tracks_, T_C_V_, options_.mapping);
+  update_median_depth();
+  if (wants_keyframe()) add_keyframe(time, pyramid);
+  previous_ = pyramid;
+  const double share = static_cast<double>(s.inliers) / static_cast<double>(s.error_px.size());
+  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance};
+}
+
+void MapTracker::update_median_depth() {
+  std::vector<double> depths;
+  for (const Track& t : tracks_) {
+    if (const Landmark* landmark = located(t)) depths.push_back((T_C_V_ * landmark->p_V).z());
+  }
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  median_depth_ = *middle;
+}
+
+bool MapTracker::wants_keyframe() const {
+  const Keyframe& last = map_.keyframes.back();
+  const Eigen::Quaterniond R = T_C_V_.R_C_V * last.T_C_V.R_C_V.conjugate();
+  std::vector<double> flows;
+  for (const Track& t : tracks_) {
+    const auto it = map_.landmarks.find(t.landmark);
+    if (it == map_.landmarks.end() || it->second.observations.empty()) continue;
+    const KeyframeObservation& o = it->second.observations.back();
+    if (o.keyframe != last.id) continue;
+    flows.push_back((t.normalised - (R * o.normalised.homogeneous()).hnormalized()).norm());
+  }
+  if (flows.empty() || static_cast<double>(flows.size()) < kKeyframeCommon * static_cast<double>(keyframe_tracks_)) {
+    return true;
+  }
+  const auto middle = flows.begin() + static_cast<std::ptrdiff_t>(flows.size() / 2);
+  std::nth_element(flows.begin(), middle, flows.end());
+  return *middle > kKeyframeFlow_rad;
+}
+
+void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
+  // At most half of the tracks: the other half must be new parts of the scene.
+  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, options_.camera, options_.max_tracks / 2);
+  tracks_.insert(tracks_.end(), again.begin(), again.end());
+  std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
+
+  const std::int64_t id = map_.keyframes.back().id + 1;
+  map_.keyframes.push_back({id, time, T_C_V_, pyramid});
+  for (const Track& t : tracks_) {
+    if (t.strikes == 0) map_.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});
+  }
+  adjust_window(map_, options_.mapping);
+  T_C_V_ = map_.keyframes.back().T_C_V;
+  fill_up(pyramid);
+  forget_old(map_, tracks_, options_.mapping);
+}
+
+void MapTracker::fill_up(const Pyramid& pyramid) {
+  const std::size_t old = tracks_.size();
+  refill(tracks_, pyramid[0], options_.camera, options_.max_tracks, next_landmark_);
+  const std::int64_t id = map_.keyframes.back().id;
+  for (std::size_t i = old; i < tracks_.size(); ++i) {
+    map_.landmarks[tracks_[i].landmark].observations.push_back({id, tracks_[i].px, tracks_[i].normalised});
+  }
+  keyframe_tracks_ = tracks_.size();
+}
+
+}  // namespace rfmvo

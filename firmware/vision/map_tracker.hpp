@@ -1,0 +1,64 @@
+// Follows the camera through a map that grows with it: one pose per frame, key frames now and then.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/camera_model.hpp"
+#include "vision/map.hpp"
+#include "vision/mapping.hpp"
+#include "vision/motion_solver.hpp"
+
+namespace rfmvo {
+
+struct MapTrackerOptions {
+  CameraModel camera;
+  int max_tracks = 200;
+  MappingOptions mapping;
+};
+
+struct TrackedPose {
+  ViewPose T_C_V;
+  int inliers = 0;
+  double inlier_share = 0.0;               // of the located tracks
+  double median_depth = 1.0;               // units of V
+  Matrix6d covariance = Matrix6d::Zero();  // of this pose against the map; step of moved()
+};
+
+class MapTracker {
+ public:
+  explicit MapTracker(const MapTrackerOptions& options) : options_(options) {}
+
+  // Starts from a map whose newest key frame is this image.
+  void begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std::int64_t next_landmark);
+
+  // The next frame. No value: the pose was not found; the frame is then as if it had never been.
+  [[nodiscard]] std::optional<TrackedPose> on(DeviceTime time, const Pyramid& pyramid);
+
+  [[nodiscard]] std::int64_t next_landmark() const { return next_landmark_; }
+  [[nodiscard]] DeviceTime pose_time() const { return pose_time_; }
+
+ private:
+  [[nodiscard]] const Landmark* located(const Track& track) const;
+  [[nodiscard]] ViewPose predict(DeviceTime time) const;
+  [[nodiscard]] std::vector<cv::Point2f> predict_tracks(const ViewPose& T_C_V) const;
+  [[nodiscard]] MotionSolution locate_camera(const ViewPose& predicted, std::vector<Track>& followed) const;
+  [[nodiscard]] bool wants_keyframe() const;
+  void add_keyframe(DeviceTime time, const Pyramid& pyramid);
+  void fill_up(const Pyramid& pyramid);
+  void update_median_depth();
+
+  MapTrackerOptions options_;
+  Map map_;
+  std::vector<Track> tracks_;  // sorted by landmark; where they are in previous_
+  Pyramid previous_;
+  std::int64_t next_landmark_ = 0;
+  DeviceTime pose_time_;
+  ViewPose T_C_V_;   // the newest pose
+  ViewPose motion_;  // T_C2_C1 of the two newest poses
+  double motion_s_ = 0.0;
+  double median_depth_ = 1.0;
+  std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made
+};
+
+}  // namespace rfmvo
