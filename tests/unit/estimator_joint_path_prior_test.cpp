@@ -24,7 +24,9 @@ Normal normal_of(const World& w, const JointState& state) {
   return n;
 }
 
-double cost_of(const World& w, const JointState& state) { return add_path_prior(w.problem, state, layout_of(state), nullptr, nullptr); }
+double cost_of(const World& w, const JointState& state) {
+  return add_path_prior(w.problem, state, layout_of(state), nullptr, nullptr);
+}
 
 // Truth, its electrical lengths as the prior has them: every residual of the prior is zero.
 World world_at_rest() {
@@ -63,11 +65,13 @@ TEST(PathPrior, GradientIsTheNumericDerivativeOfTheCost) {
     const Normal normal = normal_of(w, state);
     for (int c = 0; c < normal.g.size(); ++c) {
       if (c == layout_of(state).port(0)) continue;  // fixed by definition
-      const double numeric = joint_scene::slope([&](double h) {
-        JointState s = state;
-        shared_state(s, c) += h;
-        return cost_of(w, s);
-      }, 1e-5);
+      const double numeric = joint_scene::slope(
+          [&](double h) {
+            JointState s = state;
+            shared_state(s, c) += h;
+            return cost_of(w, s);
+          },
+          1e-5);
       // Quadratic but for the scale: the rounding of the cost (1e4 to 1e-16) over the step.
       EXPECT_NEAR(normal.g[c], -numeric, 1e-6 * (std::abs(numeric) + normal.cost)) << c;
     }
@@ -87,8 +91,9 @@ TEST(PathPrior, InformationIsTheNumericHessianAtZeroResidual) {
   for (int a = 0; a < normal.H.rows(); ++a)
     for (int b = 0; b <= a; ++b) {
       if (a == layout_of(w.truth).port(0) || b == layout_of(w.truth).port(0)) continue;
-      const double numeric = (at(a, kStep, b, kStep) - at(a, kStep, b, -kStep) - at(a, -kStep, b, kStep) +
-                              at(a, -kStep, b, -kStep)) / (4.0 * kStep * kStep);
+      const double numeric =
+          (at(a, kStep, b, kStep) - at(a, kStep, b, -kStep) - at(a, -kStep, b, kStep) + at(a, -kStep, b, -kStep)) /
+          (4.0 * kStep * kStep);
       EXPECT_NEAR(normal.H(a, b), numeric, 1e-6 * (1.0 + std::sqrt(normal.H(a, a) * normal.H(b, b)))) << a << " " << b;
     }
 }
@@ -138,8 +143,8 @@ TEST(PathPrior, ATrueDriftCostsOnlyItsOwnWalk) {
         state.knots[k - 1].path_correction_W + share * (epsilon * step + theta.cross(step));
   }
   const double walk_m = 0.75;
-  const double expected = 0.5 * epsilon * epsilon / (0.0035 * 0.0035 * walk_m) +
-                          0.5 * theta.squaredNorm() / (0.0044 * 0.0044 * walk_m);
+  const double expected =
+      0.5 * epsilon * epsilon / (0.0035 * 0.0035 * walk_m) + 0.5 * theta.squaredNorm() / (0.0044 * 0.0044 * walk_m);
   EXPECT_NEAR(cost_of(w, state), expected, 1e-9);
 }
 

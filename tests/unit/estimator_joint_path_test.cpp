@@ -14,7 +14,8 @@ using joint_scene::random_vector;
 
 DeviceTime at(double seconds) { return {std::llround(seconds * 1e9)}; }
 
-CameraPose pose_at(double seconds, const Eigen::Vector3d& p_V_C, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity()) {
+CameraPose pose_at(double seconds, const Eigen::Vector3d& p_V_C,
+                   const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity()) {
   CameraPose pose;
   pose.time = at(seconds);
   pose.status = VoStatus::kTracking;
@@ -44,7 +45,8 @@ std::vector<TimedPhase> hopping_chain(double cable_m, double air_m, double noise
     const double time_s = 0.05 * i;
     const double distance_m = air_m + 0.3 * std::sin(0.7 * time_s);  // up to 0.2 m/s, towards and away
     const double term = joint_scene::frequency_term_rad_m(frequency_hz);
-    const double phase = joint_scene::wavenumber_rad_m(920e6) * distance_m + term * (distance_m + cable_m) + offset_rad + normal(random);
+    const double phase =
+        joint_scene::wavenumber_rad_m(920e6) * distance_m + term * (distance_m + cable_m) + offset_rad + normal(random);
     chain.push_back({time_s, std::remainder(phase, 2.0 * joint_scene::kPi), term});
   }
   return chain;
@@ -120,7 +122,8 @@ TEST(OdometryPath, GeometryOfAReadIsThePathsOwn) {
   const Eigen::Vector3d velocity = random_vector(random, 1.0), turning = random_vector(random, 1.0);
   const ReadGeometry g = path.geometry(pose.T_V_C, velocity, turning);
   constexpr double kStep_s = 1e-3;
-  const ReadGeometry later = path.geometry({pose.T_V_C.R_V_C, pose.T_V_C.p_V_C + kStep_s * velocity}, velocity, turning);
+  const ReadGeometry later =
+      path.geometry({pose.T_V_C.R_V_C, pose.T_V_C.p_V_C + kStep_s * velocity}, velocity, turning);
   path.add(pose);
   EXPECT_NEAR((g.n_W - path.poses().back().n_W).norm(), 0.0, 1e-12);
   EXPECT_NEAR((g.R_W_C - path.poses().back().R_W_C.toRotationMatrix()).norm(), 0.0, 1e-12);
@@ -287,7 +290,8 @@ TEST(SamplingSynchronization, TakesNoPoseThatIsLostOrStarting) {
 TEST(SamplingSynchronization, ReadsOutOfOrderComeOutInTimeOrder) {
   SamplingSynchronization sync{Config{}};
   (void)sync.on(steady_pose(1.0));
-  for (const double t : {1.08, 1.02, 1.06, 1.04, 1.02}) (void)sync.on(read_at(t, static_cast<std::uint8_t>(t * 100 - 100)));
+  for (const double t : {1.08, 1.02, 1.06, 1.04, 1.02})
+    (void)sync.on(read_at(t, static_cast<std::uint8_t>(t * 100 - 100)));
   (void)sync.on(read_at(1.06, 99));  // of equal time: after the one that came first
   const auto& ready = sync.on(steady_pose(1.1));
   ASSERT_EQ(ready.size(), 6U);

@@ -71,7 +71,8 @@ TEST(Conditioning, IsTheExactGaussianConditional) {
     for (Eigen::Index count = 1; count <= 3; ++count) {
       // From the inverse of the joint covariance: variance 1 / P00, weights -P0i / P00.
       const Eigen::MatrixXd P = K.topLeftCorner(count + 1, count + 1).inverse();
-      const Conditioning c = condition_on_neighbours(static_cast<std::size_t>(count), s.distances, white, 0.4, kLength_m);
+      const Conditioning c =
+          condition_on_neighbours(static_cast<std::size_t>(count), s.distances, white, 0.4, kLength_m);
       // K's condition number is at most 4 * 0.16 / 4e-4 = 1600.
       EXPECT_NEAR(c.variance_rad2, 1.0 / P(0, 0), 1e-10);
       for (Eigen::Index i = 1; i <= count; ++i)
@@ -97,7 +98,8 @@ TEST(Conditioning, NeverKnowsLessThanThePriorNorMoreThanTheWhiteNoiseLeaves) {
 
 TEST(Conditioning, OnReadsAtTheSamePlaceStaysFinite) {
   // Standstill: the structured errors are one; only white noise keeps the matrix definite.
-  const Conditioning c = condition_on_neighbours(3, Eigen::Matrix4d::Zero(), Eigen::Vector4d::Constant(4.8e-4), 0.8, kLength_m);
+  const Conditioning c =
+      condition_on_neighbours(3, Eigen::Matrix4d::Zero(), Eigen::Vector4d::Constant(4.8e-4), 0.8, kLength_m);
   EXPECT_NEAR(c.variance_rad2, 4.8e-4 * 4.0 / 3.0, 1e-6);  // mean of three noisy looks, and this one's own noise
   for (const double weight : c.weights) EXPECT_NEAR(weight, 1.0 / 3.0, 1e-3);
 }

@@ -41,7 +41,12 @@ double phase_of(const Case& c) { return predict_phase(c.geometry, c.states).phas
 double numeric(Case c, const std::function<double&(ReadStates&)>& state) {
   double& x = state(c.states);
   const double at = x;
-  return slope([&](double h) { x = at + h; return phase_of(c); }, 1e-5);
+  return slope(
+      [&](double h) {
+        x = at + h;
+        return phase_of(c);
+      },
+      1e-5);
 }
 
 // Central differences with h = 1e-5: rounding 1e-16 * 150 rad / 1e-5 = 2e-9; third derivatives of the distance times
@@ -51,12 +56,14 @@ constexpr double kNumeric = 2e-7;
 void expect_jacobian_is_numeric(const Case& c) {
   const PhaseJacobian j = predict_phase(c.geometry, c.states).jacobian;
   EXPECT_NEAR(j.log_scale, numeric(c, [](ReadStates& s) -> double& { return s.log_scale; }), kNumeric);
-  EXPECT_NEAR(j.electrical_length, numeric(c, [](ReadStates& s) -> double& { return s.electrical_length_m; }), kNumeric);
+  EXPECT_NEAR(j.electrical_length, numeric(c, [](ReadStates& s) -> double& { return s.electrical_length_m; }),
+              kNumeric);
   EXPECT_NEAR(1.0, numeric(c, [](ReadStates& s) -> double& { return s.port_offset_rad; }), kNumeric);
   EXPECT_NEAR(1.0, numeric(c, [](ReadStates& s) -> double& { return s.tag_offset_rad; }), kNumeric);
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(j.lever_arm[i], numeric(c, [i](ReadStates& s) -> double& { return s.lever_arm_C[i]; }), kNumeric);
-    EXPECT_NEAR(j.path_correction[i], numeric(c, [i](ReadStates& s) -> double& { return s.path_correction_W[i]; }), kNumeric);
+    EXPECT_NEAR(j.path_correction[i], numeric(c, [i](ReadStates& s) -> double& { return s.path_correction_W[i]; }),
+                kNumeric);
     EXPECT_NEAR(j.tag_position[i], numeric(c, [i](ReadStates& s) -> double& { return s.p_W_X[i]; }), kNumeric);
   }
 }
@@ -104,8 +111,9 @@ TEST(PhaseModel, ARigidMotionOfTheWholeWorldChangesNothing) {
     moved.states.rotation_correction_W = R * c.states.rotation_correction_W;
     moved.states.p_W_X = R * c.states.p_W_X + t;
     EXPECT_NEAR(phase_of(moved), phase_of(c), 1e-11);  // some 200 rad to 1e-14
-    EXPECT_NEAR((antenna_position(moved.geometry, moved.states) - R * antenna_position(c.geometry, c.states) - t).norm(),
-                0.0, 1e-12);
+    EXPECT_NEAR(
+        (antenna_position(moved.geometry, moved.states) - R * antenna_position(c.geometry, c.states) - t).norm(), 0.0,
+        1e-12);
   }
 }
 

@@ -20,7 +20,9 @@ inline constexpr double kLight_m_s = 299792458.0;
 inline constexpr double kReference_hz = 920e6;
 
 inline double wavenumber_rad_m(double frequency_hz) { return 4.0 * kPi * frequency_hz / kLight_m_s; }
-inline double frequency_term_rad_m(double frequency_hz) { return 4.0 * kPi * (frequency_hz - kReference_hz) / kLight_m_s; }
+inline double frequency_term_rad_m(double frequency_hz) {
+  return 4.0 * kPi * (frequency_hz - kReference_hz) / kLight_m_s;
+}
 
 inline Eigen::Vector3d random_vector(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> uniform(-size, size);
@@ -41,7 +43,8 @@ inline Eigen::MatrixXd error_covariance(const std::vector<Eigen::Vector3d>& posi
   Eigen::MatrixXd K(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      const double a = (positions_m[static_cast<std::size_t>(i)] - positions_m[static_cast<std::size_t>(j)]).norm() / length_m;
+      const double a =
+          (positions_m[static_cast<std::size_t>(i)] - positions_m[static_cast<std::size_t>(j)]).norm() / length_m;
       K(i, j) = sigma_rad * sigma_rad * (1.0 + a) * std::exp(-a) + (i == j ? white_rad2 : 0.0);
     }
   return K;

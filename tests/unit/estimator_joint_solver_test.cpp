@@ -28,8 +28,8 @@ World make_exact_world() {
     for (std::size_t i = 0; i < reads.size(); ++i) {
       JointRead& r = reads[i];
       const auto t = static_cast<std::size_t>(&reads - w.problem.reads.data());
-      r.phase_rad = r.geometry.wavenumber_rad_m * (r.p_W_A - w.truth.tags[t].p_W_X).norm() + w.truth.tags[t].offset_rad +
-                    r.geometry.frequency_term_rad_m * w.problem.priors.electrical_length_m;
+      r.phase_rad = r.geometry.wavenumber_rad_m * (r.p_W_A - w.truth.tags[t].p_W_X).norm() +
+                    w.truth.tags[t].offset_rad + r.geometry.frequency_term_rad_m * w.problem.priors.electrical_length_m;
     }
   return w;
 }
@@ -84,7 +84,9 @@ Dense dense_normal_equations(const World& w, const JointState& state) {
       shifted(-kStep, minus);
       const int column = c < d.shared ? c : d.shared + 4 * t + (c - d.shared);
       for (Eigen::Index i = 0; i < rows; ++i)
-        J(i, column) = -(plus.rows[static_cast<std::size_t>(i)].residual - minus.rows[static_cast<std::size_t>(i)].residual) / (2.0 * kStep);
+        J(i, column) =
+            -(plus.rows[static_cast<std::size_t>(i)].residual - minus.rows[static_cast<std::size_t>(i)].residual) /
+            (2.0 * kStep);
     }
     d.H += J.transpose() * weight.asDiagonal() * J;
     d.g += J.transpose() * weight.asDiagonal() * r;
@@ -139,11 +141,17 @@ TEST(JointSolver, CovarianceIsTheInverseOfTheWholeNormalMatrix) {
   // The derivatives are good to 1e-5 in some 800 / rad (wavenumber over white noise): 1e-8 of the largest, and up to
   // 1e4 more where a direction is seen through small differences only.
   constexpr double kRelative = 1e-4;
-  EXPECT_LT(worst_relative(c.shared, inverse.topLeftCorner(d.shared, d.shared), sigma.head(d.shared), sigma.head(d.shared)), kRelative);
+  EXPECT_LT(
+      worst_relative(c.shared, inverse.topLeftCorner(d.shared, d.shared), sigma.head(d.shared), sigma.head(d.shared)),
+      kRelative);
   for (int t = 0; t < 5; ++t) {
     const int at = d.shared + 4 * t;
-    EXPECT_LT(worst_relative(c.tag[static_cast<std::size_t>(t)], inverse.block<4, 4>(at, at), sigma.segment<4>(at), sigma.segment<4>(at)), kRelative);
-    EXPECT_LT(worst_relative(c.tag_shared[static_cast<std::size_t>(t)], inverse.block(at, 0, 4, d.shared), sigma.segment<4>(at), sigma.head(d.shared)), kRelative);
+    EXPECT_LT(worst_relative(c.tag[static_cast<std::size_t>(t)], inverse.block<4, 4>(at, at), sigma.segment<4>(at),
+                             sigma.segment<4>(at)),
+              kRelative);
+    EXPECT_LT(worst_relative(c.tag_shared[static_cast<std::size_t>(t)], inverse.block(at, 0, 4, d.shared),
+                             sigma.segment<4>(at), sigma.head(d.shared)),
+              kRelative);
   }
 }
 
@@ -158,7 +166,8 @@ TEST(JointSolver, OneStepIsTheDampedStepOfTheWholeSystem) {
   JointState state = start;
   ASSERT_EQ(solve(w.problem, {.max_iterations = 1}, state).iterations, 1);
   ASSERT_LT(total_cost(w.problem, state), total_cost(w.problem, start));
-  const Eigen::VectorXd sigma = d.H.ldlt().solve(Eigen::MatrixXd::Identity(d.H.rows(), d.H.cols())).diagonal().cwiseSqrt();
+  const Eigen::VectorXd sigma =
+      d.H.ldlt().solve(Eigen::MatrixXd::Identity(d.H.rows(), d.H.cols())).diagonal().cwiseSqrt();
   JointState s = state, from = start;
   // Errors of the numeric derivatives (see above), in sigmas of each state; the step itself is many sigmas long.
   for (int c = 0; c < d.shared; ++c)
@@ -166,7 +175,8 @@ TEST(JointSolver, OneStepIsTheDampedStepOfTheWholeSystem) {
   for (int t = 0; t < 5; ++t)
     for (int i = 0; i < 4; ++i) {
       const int c = d.shared + 4 * t + i;
-      const double moved = tag_state(s.tags[static_cast<std::size_t>(t)], i) - tag_state(from.tags[static_cast<std::size_t>(t)], i);
+      const double moved =
+          tag_state(s.tags[static_cast<std::size_t>(t)], i) - tag_state(from.tags[static_cast<std::size_t>(t)], i);
       EXPECT_NEAR(moved / sigma[c], step[c] / sigma[c], 1e-3) << c;
     }
   EXPECT_GT((step.array() / sigma.array()).abs().maxCoeff(), 1.0);
@@ -228,8 +238,7 @@ TEST(JointSolver, TheOrderOfTagsDoesNotMatter) {
   EXPECT_NEAR(solve(other.problem, kToTheEnd, reversed).cost, cost, 1e-8);
   // Both stop where 1e-13 of the cost is left: 1e-5 sigmas, and a sigma is some centimetres.
   EXPECT_NEAR(reversed.log_scale, state.log_scale, 1e-6);
-  for (std::size_t t = 0; t < 5; ++t)
-    EXPECT_NEAR((reversed.tags[4 - t].p_W_X - state.tags[t].p_W_X).norm(), 0.0, 1e-6);
+  for (std::size_t t = 0; t < 5; ++t) EXPECT_NEAR((reversed.tags[4 - t].p_W_X - state.tags[t].p_W_X).norm(), 0.0, 1e-6);
 }
 
 TEST(JointSolver, AConstantInAllPhasesOfATagOnlyChangesItsOffset) {

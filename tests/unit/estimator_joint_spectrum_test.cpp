@@ -55,7 +55,7 @@ TEST(NearFieldSpectrum, TheOffsetOfAGroupDoesNotMatter) {
     const Eigen::Vector3d p = kTag + random_vector(random, 0.2);
     auto shifted = reads;
     for (SpectrumRead& r : shifted) r.phase_turns += r.group == 0 ? 0.125F : 0.25F;  // nearly exact in float
-    EXPECT_NEAR(near_field_power(shifted, p), near_field_power(reads, p), 1e-4);  // 40 reads, 2 pi 1e-7 turns each
+    EXPECT_NEAR(near_field_power(shifted, p), near_field_power(reads, p), 1e-4);     // 40 reads, 2 pi 1e-7 turns each
   }
 }
 

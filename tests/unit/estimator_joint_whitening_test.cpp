@@ -58,7 +58,8 @@ Eigen::VectorXd add_errors(Chain& chain, std::mt19937& random) {
   for (double& x : e) x = normal(random);
   e = (K.llt().matrixL() * e).eval();
   for (std::size_t i = 0; i < chain.reads().size(); ++i)
-    chain.reads()[i].phase_rad = std::remainder(chain.reads()[i].phase_rad + e[static_cast<Eigen::Index>(i)], 2.0 * joint_scene::kPi);
+    chain.reads()[i].phase_rad =
+        std::remainder(chain.reads()[i].phase_rad + e[static_cast<Eigen::Index>(i)], 2.0 * joint_scene::kPi);
   return e;
 }
 
@@ -83,7 +84,8 @@ TEST(ChainWhitening, MakesErrorsOfTheModelWhiteWithUnitVariance) {
     for (std::size_t i = 0; i < w.rows.size(); ++i) {
       sum += w.rows[i].residual;
       squares += w.rows[i].residual * w.rows[i].residual;
-      for (std::size_t lag = 1; lag <= 4 && lag <= i; ++lag) lagged[lag - 1] += w.rows[i].residual * w.rows[i - lag].residual;
+      for (std::size_t lag = 1; lag <= 4 && lag <= i; ++lag)
+        lagged[lag - 1] += w.rows[i].residual * w.rows[i - lag].residual;
     }
   }
   // 12000 samples: the mean has sigma 0.009, the variance 0.013, a correlation 0.009. Five sigmas; the correlations
@@ -161,9 +163,11 @@ TEST(ChainWhitening, WholeTurnsInAPhaseChangeNothing) {
   Chain chain = straight_chain(30, 0.02, 0.03 * 0.03);
   add_errors(chain, random);
   const WhitenedTag before = chain.whitened();
-  for (std::size_t i = 0; i < chain.reads().size(); ++i) chain.reads()[i].phase_rad += 2.0 * joint_scene::kPi * (static_cast<double>(i % 5) - 2.0);
+  for (std::size_t i = 0; i < chain.reads().size(); ++i)
+    chain.reads()[i].phase_rad += 2.0 * joint_scene::kPi * (static_cast<double>(i % 5) - 2.0);
   const WhitenedTag after = chain.whitened();
-  for (std::size_t i = 0; i < before.rows.size(); ++i) EXPECT_NEAR(after.rows[i].residual, before.rows[i].residual, 1e-10);
+  for (std::size_t i = 0; i < before.rows.size(); ++i)
+    EXPECT_NEAR(after.rows[i].residual, before.rows[i].residual, 1e-10);
 }
 
 TEST(ChainWhitening, ReadsOfTwoPortsDoNotMix) {
@@ -183,7 +187,8 @@ TEST(ChainWhitening, RowDerivativesAreNumericDerivativesOfTheResidual) {
   // Dense enough to mix neighbours across knots; small residuals, so that nothing wraps or flips.
   world.problem.correlation_length_m = 0.2;
   JointState state = world.truth;
-  for (std::size_t k = 1; k < state.knots.size(); ++k) state.knots[k].path_correction_W = joint_scene::random_vector(random, 0.005);
+  for (std::size_t k = 1; k < state.knots.size(); ++k)
+    state.knots[k].path_correction_W = joint_scene::random_vector(random, 0.005);
   state.log_scale += 0.002;
   const SharedLayout layout = joint_scene::layout_of(state);
   WhitenedTag rows, plus, minus;
@@ -217,7 +222,8 @@ TEST(ChainWhitening, RowDerivativesAreNumericDerivativesOfTheResidual) {
       shifted(kStep, plus);
       shifted(-kStep, minus);
       for (std::size_t i = 0; i < reads.size(); ++i)
-        numeric(static_cast<Eigen::Index>(i), column) = -(plus.rows[i].residual - minus.rows[i].residual) / (2.0 * kStep);
+        numeric(static_cast<Eigen::Index>(i), column) =
+            -(plus.rows[i].residual - minus.rows[i].residual) / (2.0 * kStep);
     }
     // 100 rad to 1e-14 over 0.05 rad and 1e-5: 2e-6; the third derivatives: 1e-7.
     EXPECT_LT((analytic - numeric).cwiseAbs().maxCoeff(), 1e-5);
