@@ -51,6 +51,7 @@ struct JointConfig {
   double located_sigma_max_m = 0.25;      // above: WEAK_GEOMETRY
   double vo_scale_walk_per_sqrt_m = 0.0035;   // drift of the odometry's scale, 1 sigma
   double vo_rotation_walk_deg_per_sqrt_m = 0.25;
+  double vo_position_walk_m_per_sqrt_m = 0.001;  // wander of the position that neither of the two explains
   double vo_position_sigma_m = 0.001;     // per pose, white
 };
 

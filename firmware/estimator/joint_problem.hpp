@@ -60,7 +60,7 @@ struct JointPriors {
   std::vector<double> lever_arm_sigma_m;         // per port
   double scale_walk_per_sqrt_m = 0.0035;         // of epsilon
   double rotation_walk_rad_per_sqrt_m = 0.0044;  // of theta, per axis
-  double knot_position_sigma_m = 0.0005;         // what interpolation between knots leaves, per step
+  double position_walk_m_per_sqrt_m = 0.001;     // of d beside what epsilon and theta explain, per axis
 };
 
 struct JointProblem {

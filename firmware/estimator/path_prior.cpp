@@ -41,6 +41,19 @@ class Factor {
   int count_ = 0;
 };
 
+struct IntervalSigma {
+  double drift, turn, position_m;
+};
+// What the trapezium leaves of a random walk of density q over a length L has variance q^2 L^3 / 12.
+IntervalSigma interval_sigma(const JointProblem& problem, std::size_t k) {
+  const JointPriors& priors = problem.priors;
+  const double length_m = std::max(problem.reference_scale_m * problem.intervals[k].length_V, kMinInterval_m);
+  const double walk = std::sqrt(length_m);
+  const double density = std::max(priors.scale_walk_per_sqrt_m, priors.rotation_walk_rad_per_sqrt_m);
+  return {priors.scale_walk_per_sqrt_m * walk, priors.rotation_walk_rad_per_sqrt_m * walk,
+          std::hypot(priors.position_walk_m_per_sqrt_m * walk, density * walk * length_m / std::sqrt(12.0))};
+}
+
 int knot_column(const SharedLayout& layout, int knot, int offset) { return knot == 0 ? -1 : layout.knot(knot) + offset; }
 
 double add_interval(const JointProblem& problem, const JointState& state, const SharedLayout& layout, int k,
@@ -48,32 +61,26 @@ double add_interval(const JointProblem& problem, const JointState& state, const 
   const KnotInterval& interval = problem.intervals[static_cast<std::size_t>(k)];
   const KnotState& a = state.knots[static_cast<std::size_t>(k)];
   const KnotState& b = state.knots[static_cast<std::size_t>(k) + 1];
-  const JointPriors& priors = problem.priors;
-  const double length_m = std::max(problem.reference_scale_m * interval.length_V, kMinInterval_m);
-  const double walk = std::sqrt(length_m);
+  const IntervalSigma sigma = interval_sigma(problem, static_cast<std::size_t>(k));
   double cost = 0.0;
 
   Factor drift;
   drift.add(knot_column(layout, k, 6), -1.0);
   drift.add(knot_column(layout, k + 1, 6), 1.0);
-  cost += drift.close(b.log_scale_drift - a.log_scale_drift, priors.scale_walk_per_sqrt_m * walk, H, g);
+  cost += drift.close(b.log_scale_drift - a.log_scale_drift, sigma.drift, H, g);
   for (int i = 0; i < 3; ++i) {
     Factor turn;
     turn.add(knot_column(layout, k, 3 + i), -1.0);
     turn.add(knot_column(layout, k + 1, 3 + i), 1.0);
-    cost += turn.close(b.rotation_correction_W[i] - a.rotation_correction_W[i],
-                       priors.rotation_walk_rad_per_sqrt_m * walk, H, g);
+    cost += turn.close(b.rotation_correction_W[i] - a.rotation_correction_W[i], sigma.turn, H, g);
   }
 
-  // d(k+1) - d(k) - step (epsilon + theta x), trapezoidal in epsilon and theta. What the trapezium
-  // leaves of a random walk of density q has variance q^2 L^3 / 12.
+  // d(k+1) - d(k) - step (epsilon + theta x), trapezoidal in epsilon and theta.
   const Eigen::Vector3d step = std::exp(state.log_scale) * interval.step_W;
   const double epsilon = 0.5 * (a.log_scale_drift + b.log_scale_drift);
   const Eigen::Vector3d theta = 0.5 * (a.rotation_correction_W + b.rotation_correction_W);
   const Eigen::Vector3d moved = epsilon * step + theta.cross(step);
   const Eigen::Vector3d residual = b.path_correction_W - a.path_correction_W - moved;
-  const double density = std::max(priors.scale_walk_per_sqrt_m, priors.rotation_walk_rad_per_sqrt_m);
-  const double sigma = std::hypot(priors.knot_position_sigma_m, density * std::pow(length_m, 1.5) / std::sqrt(12.0));
   const Eigen::Matrix3d d_theta = 0.5 * skew(step);  // residual contains + step x theta
   for (int i = 0; i < 3; ++i) {
     Factor f;
@@ -86,12 +93,21 @@ double add_interval(const JointProblem& problem, const JointState& state, const 
       f.add(knot_column(layout, k, 3 + j), d_theta(i, j));
       f.add(knot_column(layout, k + 1, 3 + j), d_theta(i, j));
     }
-    cost += f.close(residual[i], sigma, H, g);
+    cost += f.close(residual[i], sigma.position_m, H, g);
   }
   return cost;
 }
 
 }  // namespace
+
+double path_prior_log_sigma(const JointProblem& problem) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < problem.intervals.size(); ++k) {
+    const IntervalSigma s = interval_sigma(problem, k);
+    sum += std::log(s.drift) + 3.0 * std::log(s.turn) + 3.0 * std::log(s.position_m);
+  }
+  return sum;
+}
 
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g) {

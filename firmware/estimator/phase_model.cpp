@@ -34,11 +34,11 @@ PredictedPhase predict_phase(const ReadGeometry& g, const ReadStates& s) {
                 g.frequency_term_rad_m * s.electrical_length_m;
   p.jacobian.log_scale = gradient.dot(moved_W);
   const Eigen::Matrix3d R_corrected = so3_exp(s.rotation_correction_W).toRotationMatrix() * g.R_W_C;
+  const Eigen::Matrix3d turned = so3_exp(s.time_offset_s * g.angular_velocity_C).toRotationMatrix();
   p.jacobian.time_offset =
-      gradient.dot(scale * g.velocity_W + R_corrected * g.angular_velocity_C.cross(s.lever_arm_C));
+      gradient.dot(scale * g.velocity_W + R_corrected * (turned * g.angular_velocity_C.cross(s.lever_arm_C)));
   p.jacobian.electrical_length = g.frequency_term_rad_m;
-  p.jacobian.lever_arm =
-      (R_corrected * so3_exp(s.time_offset_s * g.angular_velocity_C).toRotationMatrix()).transpose() * gradient;
+  p.jacobian.lever_arm = (R_corrected * turned).transpose() * gradient;
   p.jacobian.path_correction = gradient;
   p.jacobian.rotation_correction = lever_W.cross(gradient);  // gradient . (theta x lever)
   p.jacobian.tag_position = -gradient;

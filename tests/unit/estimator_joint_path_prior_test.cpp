@@ -129,7 +129,6 @@ TEST(PathPrior, ATrueDriftCostsOnlyItsOwnWalk) {
   // Scale grows and the heading turns by a little at the first knot and stays so: d follows as its integral, to second
   // order in the angle. Only the first interval's walk is paid, and one interval that the trapezium sees half of.
   World w = world_at_rest();
-  w.problem.priors.knot_position_sigma_m = 0.01;
   JointState state = w.truth;
   const double epsilon = 0.002;
   const Eigen::Vector3d theta(0.0, 0.0, 0.003);
