@@ -105,7 +105,7 @@ const ConfigRow kRows[] = {
     {"joint.vo_rotation_walk_deg_per_sqrt_m", "deg/sqrt(m)", &at<kJoint, &J::vo_rotation_walk_deg_per_sqrt_m>, 0, 90, "",
      "random walk of the odometry's rotation, 1 sigma after 1 m"},
     {"joint.vo_position_walk_m_per_sqrt_m", "m/sqrt(m)", &at<kJoint, &J::vo_position_walk_m_per_sqrt_m>, 1e-6, 10, "",
-     "random walk of the odometry's position beside those of scale and rotation, 1 sigma after 1 m; adapted to the reads"},
+     "random walk of the odometry's position beside those of scale and rotation, 1 sigma after 1 m"},
     {"joint.vo_position_sigma_m", "m", &at<kJoint, &J::vo_position_sigma_m>, 0, 10, "",
      "white position error of each camera pose, 1 sigma"},
 

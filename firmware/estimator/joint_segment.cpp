@@ -30,8 +30,7 @@ JointSegment::JointSegment(const Config& config, const Calibration& calibration,
       path_(T_W_C0.R),
       correlation_length_m_(config.joint.correlation_length_m),
       scale_walk_per_sqrt_m_(config.joint.vo_scale_walk_per_sqrt_m),
-      rotation_walk_rad_per_sqrt_m_(rad_from_deg(config.joint.vo_rotation_walk_deg_per_sqrt_m)),
-      position_walk_m_per_sqrt_m_(config.joint.vo_position_walk_m_per_sqrt_m) {
+      rotation_walk_rad_per_sqrt_m_(rad_from_deg(config.joint.vo_rotation_walk_deg_per_sqrt_m)) {
   for (const AntennaCalibration& antenna : calibration.antennas) {
     shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
@@ -95,7 +94,7 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   priors.electrical_length_sigma_m = 40.0;
   priors.scale_walk_per_sqrt_m = scale_walk_per_sqrt_m_;
   priors.rotation_walk_rad_per_sqrt_m = rotation_walk_rad_per_sqrt_m_;
-  priors.position_walk_m_per_sqrt_m = position_walk_m_per_sqrt_m_;
+  priors.position_walk_m_per_sqrt_m = config_.joint.vo_position_walk_m_per_sqrt_m;
   for (const AntennaCalibration& antenna : calibration_.antennas) {
     priors.lever_arm_C.push_back(antenna.p_C_A_m);
     priors.lever_arm_sigma_m.push_back(std::max(antenna.lever_arm_sigma_m, 1e-4));
@@ -334,29 +333,6 @@ void JointSegment::weigh_with_path_uncertainty(const JointProblem& problem, Join
   weigh_modes(modes);
 }
 
-// One step up or down the ladder of widths, if the reads are likelier there.
-void JointSegment::fit_position_walk(JointProblem& problem, JointState& state) {
-  constexpr double kRung = 2.0, kWorthIt = 1.0;  // nats
-  const double narrowest = config_.joint.vo_position_walk_m_per_sqrt_m, widest = 100.0 * narrowest;
-  double best = log_marginal_likelihood(problem, state);
-  for (const double factor : {kRung, 1.0 / kRung}) {
-    for (;;) {
-      const double walk = position_walk_m_per_sqrt_m_ * factor;
-      if (walk < 0.99 * narrowest || walk > widest) break;
-      JointProblem other = problem;
-      other.priors.position_walk_m_per_sqrt_m = walk;
-      JointState moved = state;
-      (void)rfmvo::solve(other, {.max_iterations = 6}, moved);
-      const double likelihood = log_marginal_likelihood(other, moved);
-      if (likelihood < best + kWorthIt) break;
-      best = likelihood;
-      position_walk_m_per_sqrt_m_ = walk;
-      problem = other;
-      state = moved;
-    }
-  }
-}
-
 void JointSegment::refine(int rounds) {
   const std::vector<Epc> epcs = joined_tags();
   if (epcs.empty()) return;
@@ -371,7 +347,6 @@ void JointSegment::refine(int rounds) {
         estimate_correlation_length(problem, state, config_.joint.correlation_length_m);
   }
   (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
-  fit_position_walk(problem, state);
   for (auto& [epc, tag] : tags_) tag.joined = false;
   keep(epcs, state);
   // Tags that were not joined are judged with the strength that the joined ones show.

@@ -77,7 +77,6 @@ class JointSegment {
   void iterate(bool thorough);
   void consider_rivals();
   void estimate_drift();
-  void fit_position_walk(JointProblem& problem, JointState& state);
   [[nodiscard]] double total_evidence() const;
   enum class Effort { kNew, kRefresh, kAll };  // search new and open tags; refine all modes; search all
   void place(Effort effort);
@@ -101,7 +100,7 @@ class JointSegment {
   double next_start_arc_V_ = 0.0;
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
   double correlation_length_m_;
-  double scale_walk_per_sqrt_m_, rotation_walk_rad_per_sqrt_m_, position_walk_m_per_sqrt_m_;  // of the odometry, as its corrections show
+  double scale_walk_per_sqrt_m_, rotation_walk_rad_per_sqrt_m_;  // of the odometry, as its corrections show
   double knot_spacing_V_ = 1.0;
   JointState shared_;             // tags stand in tags_
   JointCovariance covariance_;

@@ -181,21 +181,6 @@ double total_cost(const JointProblem& problem, const JointState& state) {
   return cost + add_path_prior(problem, state, layout, nullptr, nullptr);
 }
 
-double log_marginal_likelihood(const JointProblem& problem, const JointState& state) {
-  const NormalEquations eq = build(problem, state, false);
-  Eigen::MatrixXd S = eq.H;
-  double log_det = 0.0;
-  for (const TagBlock& tag : eq.tags) {
-    const Eigen::LLT<Eigen::Matrix4d> llt(tag.H);
-    S.selfadjointView<Eigen::Lower>().rankUpdate(
-        Eigen::MatrixXd(llt.matrixL().solve(tag.H_shared)).transpose(), -1.0);
-    log_det += 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-  }
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(S.selfadjointView<Eigen::Lower>());
-  log_det += ldlt.vectorD().array().abs().log().sum();
-  return -eq.cost - path_prior_log_sigma(problem) - 0.5 * log_det;
-}
-
 double evidence(const JointProblem& problem, const JointState& state) {
   // A uniform phase has density 1 / (2 pi); costs leave out the Gaussian's sqrt(2 pi).
   const double uniform_cost = std::log(kTwoPi) - 0.5 * std::log(kTwoPi);

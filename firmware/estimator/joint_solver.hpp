@@ -59,10 +59,6 @@ struct TagCoupling {
 // believable; the difference between two states of the same reads is their ln likelihood ratio.
 [[nodiscard]] double evidence(const JointProblem& problem, const JointState& state);
 
-// ln of the probability of the reads with all states integrated out (Laplace's approximation at a
-// solution), up to a constant: compares the widths of priors on the same reads and knots.
-[[nodiscard]] double log_marginal_likelihood(const JointProblem& problem, const JointState& state);
-
 // Robust cost of everything at a state (what solve() minimises).
 [[nodiscard]] double total_cost(const JointProblem& problem, const JointState& state);
 

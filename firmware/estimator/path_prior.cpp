@@ -100,15 +100,6 @@ double add_interval(const JointProblem& problem, const JointState& state, const 
 
 }  // namespace
 
-double path_prior_log_sigma(const JointProblem& problem) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < problem.intervals.size(); ++k) {
-    const IntervalSigma s = interval_sigma(problem, k);
-    sum += std::log(s.drift) + 3.0 * std::log(s.turn) + 3.0 * std::log(s.position_m);
-  }
-  return sum;
-}
-
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g) {
   const JointPriors& priors = problem.priors;

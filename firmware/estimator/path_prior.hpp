@@ -17,7 +17,4 @@ namespace rfmvo {
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g);
 
-// Sum of ln(sigma) of the drift factors: what the prior's width costs when widths are compared.
-[[nodiscard]] double path_prior_log_sigma(const JointProblem& problem);
-
 }  // namespace rfmvo

@@ -151,7 +151,7 @@ TEST(PathPrior, AJumpOfThePositionCostsWhatTheTrapeziumAndTheKnotsLeave) {
   World w = world_at_rest();
   w.problem.priors.rotation_walk_rad_per_sqrt_m = 0.02;
   for (std::size_t k = 1; k < w.truth.knots.size(); ++k) w.truth.knots[k].path_correction_W = {0.001, 0.0, 0.0};
-  const double variance = 0.0005 * 0.0005 + 0.02 * 0.02 * std::pow(0.75, 3) / 12.0;
+  const double variance = 0.001 * 0.001 * 0.75 + 0.02 * 0.02 * std::pow(0.75, 3) / 12.0;
   EXPECT_NEAR(cost_of(w, w.truth), 0.5 * 1e-6 / variance, 1e-9);
 }
 
