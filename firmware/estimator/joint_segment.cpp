@@ -227,9 +227,11 @@ void JointSegment::consider_rivals() {
     ++tried;
     rival = *this;
     rival.adopt(c);
-    rival.iterate(true);
-    const double e = rival.total_evidence();
+    rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
+    double e = rival.total_evidence();
     if (e > best) {
+      rival.iterate(true);
+      e = rival.total_evidence();
       second = best;
       best = e;
       const auto revision = revision_;
