@@ -17,18 +17,18 @@ namespace {
 
 const std::string kKitchen = RFMVO_TEST_DATA "/7scenes-a";
 
-struct Run {
+struct RecordedRun {
   std::vector<Event> events;
   simulate::Truth truth;
 };
 
 // The run of one seed. Frames are the same for every seed, so the odometry runs once and its poses stand
 // in for them: what `replay --from frames` computes, without computing it ten times.
-Run kitchen(std::uint64_t seed, std::vector<CameraPose>& odometry) {
+RecordedRun kitchen(std::uint64_t seed, std::vector<CameraPose>& odometry) {
   simulate::Options options;
   options.images_dir = kKitchen;
   options.seed = seed;
-  Run run;
+  RecordedRun run;
   std::optional<VisualOdometry> vo;
   const bool known = !odometry.empty();
   std::size_t frame = 0;
@@ -56,7 +56,7 @@ Run kitchen(std::uint64_t seed, std::vector<CameraPose>& odometry) {
   return run;
 }
 
-evaluate::Evaluation estimate(const Run& run, const std::string& kind) {
+evaluate::Evaluation estimate(const RecordedRun& run, const std::string& kind) {
   Pipeline pipeline;
   std::vector<Estimate> estimates;
   const auto keep = [&](std::span<const Estimate> some) { estimates.insert(estimates.end(), some.begin(), some.end()); };
@@ -77,7 +77,7 @@ TEST(RealFrames, TagsAndScaleInTheKitchenOverTenSeeds) {
   double joint_error_m = 0.0, scale_error = 0.0, paper_error_m = 0.0;
   int joint_located = 0, paper_located = 0, total = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const Run run = kitchen(static_cast<std::uint64_t>(seed), odometry);
+    const RecordedRun run = kitchen(static_cast<std::uint64_t>(seed), odometry);
     const evaluate::Evaluation joint = estimate(run, "joint");
     const evaluate::Evaluation paper = estimate(run, "paper");
     total += joint.tags.total;
