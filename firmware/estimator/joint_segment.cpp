@@ -17,7 +17,8 @@ constexpr std::size_t kMaxReadsPerChain = 120;  // more are thinned: neighbours 
 constexpr double kMeanTagDistance_m = 2.0;      // part of what hops measure as electrical length
 constexpr double kUniqueWeight = 0.95;          // of the best mode of a tag that may shape the path
 constexpr double kDecided = 6.0;                // ln likelihood ratio between two scales
-constexpr double kOtherScale = 0.1;             // of ln(scale): farther apart is another scale
+constexpr double kOtherScale = 0.035;            // of ln(scale): farther apart is another scale
+constexpr double kMaterialScale = 0.1;          // nearer ones compete, but leave the scale known
 constexpr double kMinUHF_hz = 840e6, kMaxUHF_hz = 960e6;  // EPC Gen2, all regions
 
 }  // namespace
@@ -198,7 +199,7 @@ bool JointSegment::start() {
   if (found.empty()) return false;
   evidence_margin_ = found[0].evidence;
   for (const StartCandidate& c : found)
-    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kOtherScale)
+    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kMaterialScale)
       evidence_margin_ = std::min(evidence_margin_, found[0].evidence - c.evidence);
   adopt(found[0]);
   return true;
@@ -228,16 +229,17 @@ void JointSegment::consider_rivals() {
     rival = *this;
     rival.adopt(c);
     rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
+    const auto material = [&] { return std::abs(rival.shared_.log_scale - shared_.log_scale) > kMaterialScale; };
     double e = rival.total_evidence();
     if (e > best) {
       rival.iterate(true);
       e = rival.total_evidence();
-      second = best;
+      if (material()) second = std::max(second, best);
       best = e;
       const auto revision = revision_;
       *this = rival;
       revision_ = revision;
-    } else {
+    } else if (material()) {
       second = std::max(second, e);
     }
   }

@@ -12,7 +12,7 @@ namespace rfmvo {
 namespace {
 
 constexpr std::size_t kMinReads = 8;   // of a tag that takes part: four unknowns and some to judge by
-constexpr double kSameScale = 0.08;    // two starts this near in ln(scale) are one
+constexpr double kSameScale = 0.045;   // two starts this near in ln(scale) are one
 
 struct ScalePower {
   double log_scale = 0.0;
