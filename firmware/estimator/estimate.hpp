@@ -27,7 +27,6 @@ enum class TagStatus : std::int8_t {
   kStale = 6,         // not read for longer than the configured time
   kTooFewReads = 7,
 };
-[[nodiscard]] const char* name_of(TagStatus status);
 
 struct TagHypothesis {
   Eigen::Vector3d p_W_X_m = Eigen::Vector3d::Zero();

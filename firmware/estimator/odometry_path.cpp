@@ -6,8 +6,8 @@
 namespace rfmvo {
 namespace {
 
-// Travel is counted in steps of this share of all travel so far (and of one unit of V at the
-// start), so that the odometry's jitter at standstill adds nothing.
+// Travel is counted in steps of this length, in units of V (about the median depth of the scene), so
+// that the odometry's jitter at standstill adds nothing.
 constexpr double kMinStep_V = 0.01;
 
 }  // namespace
@@ -17,7 +17,7 @@ void OdometryPath::add(const CameraPose& pose) {
     R_W_V_ = R_W_C0_ * pose.T_V_C.R_V_C.conjugate();
     p_V_C0_ = pose.T_V_C.p_V_C;
   } else if (pose.time <= poses_.back().time) {
-    return;  // out of order: the synchronization dropped it too
+    return;  // out of order: a path runs forward in time
   }
   PathPose p;
   p.time = pose.time;
