@@ -16,51 +16,35 @@ constexpr double kOutlierWeight = 0.2;  // below: not used to predict its follow
 
 using Raw = WhitenedTag::Raw;
 
-Raw raw_row(const JointRead& read, const JointState& state, const TagState& tag) {
-  const PredictedPhase p = predict_phase(read.geometry, states_at(read, state, tag));
-  const PhaseJacobian& j = p.jacobian;
-  Raw raw;
-  raw.residual = wrap_rad(read.phase_rad - p.phase_rad);
-  raw.tag << j.tag_position, 1.0;
-  raw.globals << j.log_scale, j.time_offset, 1.0, j.electrical_length, j.lever_arm;
-  raw.gradient_knot << j.path_correction, j.rotation_correction;
-  return raw;
-}
+using Lean = ChainConditioning::Read;
 
-struct Neighbours {
-  std::array<std::size_t, Conditioning::kMaxNeighbours> index{};
-  std::size_t count = 0;
-};
-
-// The last usable reads of the same chain, near enough to share the structured error.
-Neighbours neighbours_of(std::size_t i, const std::vector<JointRead>& reads, const std::vector<Raw>& raws,
-                         double length_m) {
-  Neighbours n;
+// The last reads of the same chain, near enough to share the structured error; `usable` says which to skip.
+template <class Usable>
+Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, double length_m, const Usable& usable) {
+  Lean n;
   const int last_knot = reads[i].knot + 1;
   for (std::size_t j = i; j-- > 0 && n.count < Conditioning::kMaxNeighbours;) {
     if (reads[j].port != reads[i].port) break;
     if ((reads[i].p_W_A - reads[j].p_W_A).norm() > kMaxNeighbourLengths * length_m) break;
     if (last_knot - reads[j].knot + 1 > WhitenedRow::kMaxKnots) break;
-    if (raws[j].usable) n.index[n.count++] = j;
+    if (usable(j)) n.neighbour[n.count++] = j;
   }
   return n;
 }
 
-Conditioning conditioning(std::size_t i, const Neighbours& n, const std::vector<JointRead>& reads, double sigma_rad,
-                          double length_m) {
+void condition(std::size_t i, const std::vector<JointRead>& reads, double sigma_rad, double length_m, Lean& n) {
   Eigen::Matrix<double, 4, 4> distance = Eigen::Matrix<double, 4, 4>::Zero();
   Eigen::Vector4d white = Eigen::Vector4d::Zero();
-  const auto at = [&](std::size_t k) -> const JointRead& { return reads[k == 0 ? i : n.index[k - 1]]; };
+  const auto at = [&](std::size_t k) -> const JointRead& { return reads[k == 0 ? i : n.neighbour[k - 1]]; };
   for (std::size_t a = 0; a <= n.count; ++a) {
     white[static_cast<Eigen::Index>(a)] = at(a).white_rad2;
     for (std::size_t b = 0; b <= n.count; ++b)
       distance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = (at(a).p_W_A - at(b).p_W_A).norm();
   }
-  return condition_on_neighbours(n.count, distance, white, sigma_rad, length_m);
+  n.given = condition_on_neighbours(n.count, distance, white, sigma_rad, length_m);
 }
 
 void add_scaled(WhitenedRow& row, const Raw& raw, const JointRead& read, double factor) {
-  row.tag += factor * raw.tag;
   row.globals += factor * raw.globals;
   const auto k = static_cast<std::size_t>(read.knot - row.first_knot);
   row.knot[k] += factor * (1.0 - read.knot_fraction) * raw.gradient_knot;
@@ -103,45 +87,88 @@ ReadStates states_at(const JointRead& read, const JointState& state, const TagSt
           .tag_offset_rad = tag.offset_rad};
 }
 
-void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
-            const TagState& tag, bool with_jacobian, WhitenedTag& out) {
+ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad, double length_m) {
+  ChainConditioning c{{}, structured_sigma_rad, length_m};
+  c.reads.reserve(reads.size());
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    c.reads.push_back(neighbours_of(i, reads, length_m, [](std::size_t) { return true; }));
+    condition(i, reads, structured_sigma_rad, length_m, c.reads.back());
+  }
+  return c;
+}
+
+void predict_rows(const std::vector<JointRead>& reads, const JointState& state, const TagState& tag,
+                  Derivatives derivatives, WhitenedTag& out) {
+  out.raws.resize(reads.size());
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    Raw& raw = out.raws[i];
+    const ReadStates states = states_at(reads[i], state, tag);
+    if (derivatives == Derivatives::kNone) {
+      raw.residual = wrap_rad(reads[i].phase_rad - predicted_phase_rad(reads[i].geometry, states));
+      continue;
+    }
+    const PredictedPhase p = predict_phase(reads[i].geometry, states);
+    const PhaseJacobian& j = p.jacobian;
+    raw.residual = wrap_rad(reads[i].phase_rad - p.phase_rad);
+    raw.tag << j.tag_position, 1.0;
+    raw.globals << j.log_scale, j.time_offset, 1.0, j.electrical_length, j.lever_arm;
+    raw.gradient_knot << j.path_correction, j.rotation_correction;
+  }
+}
+
+void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem, const ChainConditioning& conditioning,
+                 Derivatives derivatives, WhitenedTag& out) {
   std::vector<Raw>& raws = out.raws;
-  raws.clear();
   out.rows.resize(reads.size());
   out.cost = out.log_variance = out.inliers = 0.0;
   for (std::size_t i = 0; i < reads.size(); ++i) {
-    raws.push_back(raw_row(reads[i], state, tag));
-    Raw& raw = raws.back();
-    const Neighbours n = neighbours_of(i, reads, raws, problem.correlation_length_m);
-    const Conditioning c =
-        conditioning(i, n, reads, tag.structured_sigma_rad, problem.correlation_length_m);
+    Raw& raw = raws[i];
+    const Lean* n = &conditioning.reads[i];
+    Lean without_outliers;
+    const auto usable = [&](std::size_t j) { return raws[j].usable; };
+    if (!std::all_of(n->neighbour.begin(), n->neighbour.begin() + static_cast<std::ptrdiff_t>(n->count), usable)) {
+      without_outliers = neighbours_of(i, reads, conditioning.length_m, usable);
+      condition(i, reads, conditioning.structured_sigma_rad, conditioning.length_m, without_outliers);
+      n = &without_outliers;
+    }
+    const Conditioning& c = n->given;
     double predicted = 0.0;
-    for (std::size_t k = 0; k < n.count; ++k) predicted += c.weights[k] * raws[n.index[k]].residual;
+    for (std::size_t k = 0; k < n->count; ++k) predicted += c.weights[k] * raws[n->neighbour[k]].unwrapped;
 
-    WhitenedRow& row = out.rows[i];
-    row = WhitenedRow{};
-    row.port = reads[i].port;
     const double sigma_rad = std::sqrt(c.variance_rad2);
     const Judgement judgement = judge(wrap_rad(raw.residual - predicted), sigma_rad, problem);
-    raw.residual = predicted + judgement.innovation;  // continuous along the chain: followers are predicted well
+    raw.unwrapped = predicted + judgement.innovation;  // followers are predicted well
+    raw.usable = judgement.weight > kOutlierWeight;
+    out.cost += judgement.cost;
+    out.log_variance += std::log(c.variance_rad2);
+    out.inliers += judgement.weight;
     const double inverse_sigma = 1.0 / sigma_rad;
+    WhitenedRow& row = out.rows[i];
+    row.port = reads[i].port;
     row.residual = judgement.innovation * inverse_sigma;
     row.weight = judgement.weight;
     row.flipped = judgement.flipped;
-    raw.usable = row.weight > kOutlierWeight;
-    out.cost += judgement.cost;
-    out.log_variance += std::log(c.variance_rad2);
-    out.inliers += row.weight;
-    if (!with_jacobian) continue;
+    if (derivatives == Derivatives::kNone) continue;
+    row.tag = inverse_sigma * raw.tag;
+    for (std::size_t k = 0; k < n->count; ++k) row.tag -= c.weights[k] * inverse_sigma * raws[n->neighbour[k]].tag;
+    if (derivatives == Derivatives::kTag) continue;
 
+    row.globals.setZero();
     row.first_knot = reads[i].knot;
-    for (std::size_t k = 0; k < n.count; ++k) row.first_knot = std::min(row.first_knot, reads[n.index[k]].knot);
+    for (std::size_t k = 0; k < n->count; ++k) row.first_knot = std::min(row.first_knot, reads[n->neighbour[k]].knot);
     row.knots = reads[i].knot + 2 - row.first_knot;
     for (int k = 0; k < row.knots; ++k) row.knot[static_cast<std::size_t>(k)].setZero();
     add_scaled(row, raw, reads[i], inverse_sigma);
-    for (std::size_t k = 0; k < n.count; ++k)
-      add_scaled(row, raws[n.index[k]], reads[n.index[k]], -c.weights[k] * inverse_sigma);
+    for (std::size_t k = 0; k < n->count; ++k)
+      add_scaled(row, raws[n->neighbour[k]], reads[n->neighbour[k]], -c.weights[k] * inverse_sigma);
   }
+}
+
+void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
+            const TagState& tag, bool with_jacobian, WhitenedTag& out) {
+  const Derivatives derivatives = with_jacobian ? Derivatives::kAll : Derivatives::kNone;
+  predict_rows(reads, state, tag, derivatives, out);
+  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.correlation_length_m), derivatives, out);
 }
 
 }  // namespace rfmvo

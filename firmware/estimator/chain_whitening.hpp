@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimator/joint_problem.hpp"
+#include "estimator/phase_error_model.hpp"
 
 namespace rfmvo {
 
@@ -33,7 +34,8 @@ struct WhitenedTag {
 
   // Work space: rows before whitening.
   struct Raw {
-    double residual = 0.0;  // measured - predicted, continuous along the chain, pi flip removed
+    double residual = 0.0;   // measured - predicted, wrapped
+    double unwrapped = 0.0;  // the same continuous along the chain, pi flip removed
     Eigen::Vector4d tag;
     Eigen::Matrix<double, WhitenedRow::kGlobals, 1> globals;
     Eigen::Matrix<double, 6, 1> gradient_knot;
@@ -42,7 +44,31 @@ struct WhitenedTag {
   std::vector<Raw> raws;
 };
 
-// `rows` of out are reused: no allocation in steady state. Derivatives are skipped if !with_jacobian.
+// How each read of a tag leans on those before it, while all of them can be relied on. Depends on no
+// state: computed once per solution.
+struct ChainConditioning {
+  struct Read {
+    std::array<std::size_t, Conditioning::kMaxNeighbours> neighbour{};
+    std::size_t count = 0;
+    Conditioning given;
+  };
+  std::vector<Read> reads;
+  double structured_sigma_rad = 0.0, length_m = 0.0;
+};
+[[nodiscard]] ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad,
+                                                 double length_m);
+
+enum class Derivatives { kNone, kTag, kAll };
+
+// out.raws: prediction and derivatives of every read. `rows` and `raws` of out are reused: no
+// allocation in steady state.
+void predict_rows(const std::vector<JointRead>& reads, const JointState& state, const TagState& tag,
+                  Derivatives derivatives, WhitenedTag& out);
+// From out.raws, whoever made them, everything else of out.
+void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem, const ChainConditioning& conditioning,
+                 Derivatives derivatives, WhitenedTag& out);
+
+// Both, and the conditioning too.
 void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
             const TagState& tag, bool with_jacobian, WhitenedTag& out);
 

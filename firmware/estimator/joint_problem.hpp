@@ -41,6 +41,7 @@ struct JointRead {
   ReadGeometry geometry;
   double phase_rad = 0.0;     // measured
   double white_rad2 = 0.0;    // variance of the uncorrelated error
+  double rssi_db = 0.0;       // dBm
   Eigen::Vector3d p_W_A = Eigen::Vector3d::Zero();  // antenna at the reference scale: distances between reads
   int port = 0;               // index into ports
   int knot = 0;               // the read lies between knot and knot + 1,

@@ -31,6 +31,8 @@ struct SegmentTag {
   TagState state;
   std::vector<TagMode> modes;    // best first
   std::size_t reads_at_modes = 0;  // when they were looked for
+  PossiblePlaces places;
+  std::size_t reads_at_places = 0;  // when they were searched
   bool placed = false;           // state holds a position
   bool joined = false;           // took part in the joint solution
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
@@ -66,6 +68,8 @@ class JointSegment {
   [[nodiscard]] const JointCovariance& shared_covariance() const { return covariance_; }
 
  private:
+  static constexpr std::size_t kMinReads = 8;  // of a tag that is located: four unknowns and some to judge by
+
   [[nodiscard]] std::optional<int> port_index(std::uint8_t port) const;
   [[nodiscard]] JointProblem problem_for(const std::vector<Epc>& epcs, double reference_scale_m) const;
   [[nodiscard]] JointState state_for(const std::vector<Epc>& epcs) const;
@@ -80,7 +84,10 @@ class JointSegment {
   [[nodiscard]] double total_evidence() const;
   enum class Effort { kNew, kRefresh, kAll };  // search new and open tags; refine all modes; search all
   void place(Effort effort);
-  void weigh_with_path_uncertainty(const JointProblem& problem, JointState state, std::vector<TagMode>& modes) const;
+  void select();
+  [[nodiscard]] SharedLayout layout() const {
+    return {static_cast<int>(shared_.ports.size()), static_cast<int>(shared_.knots.size())};
+  }
   void refine(int rounds);
   void compute_covariance();
   [[nodiscard]] std::vector<Epc> joined_tags() const;

@@ -76,7 +76,17 @@ void add_tag_prior(TagBlock& block) {
   block.H(3, 3) += 1.0 / (kTagOffsetPriorSigma_rad * kTagOffsetPriorSigma_rad);
 }
 
-NormalEquations build(const JointProblem& problem, const JointState& state, bool shared_fixed, bool with_prior = true) {
+using Chains = std::vector<ChainConditioning>;  // per tag
+
+Chains chains_of(const JointProblem& problem, const JointState& state) {
+  Chains chains;
+  for (std::size_t t = 0; t < problem.reads.size(); ++t)
+    chains.push_back(condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.correlation_length_m));
+  return chains;
+}
+
+NormalEquations build(const JointProblem& problem, const Chains& chains, const JointState& state, bool shared_fixed,
+                      bool with_prior = true) {
   NormalEquations eq;
   eq.layout = {static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   const int size = shared_fixed ? 0 : eq.layout.size();
@@ -85,7 +95,8 @@ NormalEquations build(const JointProblem& problem, const JointState& state, bool
   eq.tags.resize(problem.reads.size());
   WhitenedTag whitened;
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
-    whiten(problem.reads[t], problem, state, state.tags[t], true, whitened);
+    predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
+    whiten_rows(problem.reads[t], problem, chains[t], Derivatives::kAll, whitened);
     eq.cost += whitened.cost + 0.5 * whitened.log_variance;
     eq.tags[t].H_shared = Eigen::MatrixXd::Zero(4, size);
     accumulate(whitened, eq.layout, shared_fixed, eq, eq.tags[t]);
@@ -168,17 +179,22 @@ JointState apply(const JointState& state, const Step& step, const SharedLayout& 
   return s;
 }
 
-}  // namespace
-
-double total_cost(const JointProblem& problem, const JointState& state) {
+double cost_of(const JointProblem& problem, const Chains& chains, const JointState& state) {
   double cost = 0.0;
   WhitenedTag whitened;
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
-    whiten(problem.reads[t], problem, state, state.tags[t], false, whitened);
+    predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kNone, whitened);
+    whiten_rows(problem.reads[t], problem, chains[t], Derivatives::kNone, whitened);
     cost += whitened.cost + 0.5 * whitened.log_variance;
   }
   const SharedLayout layout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   return cost + add_path_prior(problem, state, layout, nullptr, nullptr);
+}
+
+}  // namespace
+
+double total_cost(const JointProblem& problem, const JointState& state) {
+  return cost_of(problem, chains_of(problem, state), state);
 }
 
 double evidence(const JointProblem& problem, const JointState& state) {
@@ -201,15 +217,16 @@ SolverReport solve(const JointProblem& problem, const SolverOptions& options, Jo
   constexpr double kFirstLambda = 1e-4, kMaxLambda = 1e6;
   double lambda = kFirstLambda;
   SolverReport report;
-  report.cost = total_cost(problem, state);
+  const Chains chains = chains_of(problem, state);
+  report.cost = cost_of(problem, chains, state);
   while (report.iterations < options.max_iterations) {
     ++report.iterations;
-    const NormalEquations eq = build(problem, state, options.shared_fixed);
+    const NormalEquations eq = build(problem, chains, state, options.shared_fixed);
     bool improved = false;
     while (!improved && lambda < kMaxLambda) {
       const Step step = damped_step(eq, lambda);
       const JointState candidate = apply(state, step, eq.layout);
-      const double cost = total_cost(problem, candidate);
+      const double cost = cost_of(problem, chains, candidate);
       improved = cost < report.cost;
       if (improved) {
         const double decrease = report.cost - cost;
@@ -229,7 +246,7 @@ SolverReport solve(const JointProblem& problem, const SolverOptions& options, Jo
 }
 
 JointCovariance covariance(const JointProblem& problem, const JointState& state) {
-  const NormalEquations eq = build(problem, state, false);
+  const NormalEquations eq = build(problem, chains_of(problem, state), state, false);
   const int size = eq.layout.size();
   Eigen::MatrixXd S = eq.H;
   std::vector<Eigen::MatrixXd> gain(eq.tags.size());  // H_tt^-1 H_ts
@@ -241,6 +258,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
   }
   JointCovariance c;
   c.layout = eq.layout;
+  c.information = S.selfadjointView<Eigen::Lower>();
   c.shared = S.selfadjointView<Eigen::Lower>().ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   c.shared = (0.5 * (c.shared + c.shared.transpose())).eval();
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
@@ -254,7 +272,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
 
 TagCoupling tag_coupling(const JointProblem& problem, const JointState& state) {
   RFMVO_ASSERT(problem.reads.size() == 1);
-  const NormalEquations eq = build(problem, state, false, false);
+  const NormalEquations eq = build(problem, chains_of(problem, state), state, false, false);
   const TagBlock& tag = eq.tags[0];
   TagCoupling c;
   c.own_covariance = tag.H.llt().solve(Eigen::Matrix4d::Identity());

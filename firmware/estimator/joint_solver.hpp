@@ -38,6 +38,7 @@ struct SolverReport {
 // cross-covariance to the shared states.
 struct JointCovariance {
   SharedLayout layout;
+  Eigen::MatrixXd information;  // of the shared states, tags eliminated: the inverse of `shared`
   Eigen::MatrixXd shared;
   std::vector<Eigen::Matrix4d> tag;
   std::vector<Eigen::MatrixXd> tag_shared;  // 4 x size()

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "base/units.hpp"
 #include "estimator/joint_solver.hpp"
-#include "rf/phase.hpp"
+#include "estimator/port_offset_scan.hpp"
 
 namespace rfmvo {
 namespace {
@@ -70,7 +71,7 @@ std::vector<ScalePower> best_scales(const JointProblem& problem, JointState stat
   }
   std::vector<ScalePower> kept;
   for (const ScalePower& s : scales) {
-    if (kept.size() >= o.candidates) break;
+    if (kept.size() >= o.scales) break;
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const ScalePower& k) {
       return std::abs(k.log_scale - s.log_scale) < kSameScale;
     });
@@ -79,63 +80,105 @@ std::vector<ScalePower> best_scales(const JointProblem& problem, JointState stat
   return kept;
 }
 
-// Offset of each port against the first, from where the tags are: mean phasor over all reads.
-void estimate_port_offsets(const JointProblem& problem, JointState& state) {
-  for (PortState& port : state.ports) port.offset_rad = 0.0;
-  std::vector<double> c(state.ports.size(), 0.0), s(state.ports.size(), 0.0);
-  for (std::size_t t = 0; t < problem.reads.size(); ++t) {
-    std::vector<double> tc(state.ports.size(), 0.0), ts(state.ports.size(), 0.0);
-    TagState tag = state.tags[t];
-    tag.offset_rad = 0.0;
-    for (const JointRead& read : problem.reads[t]) {
-      const double r = read.phase_rad - predict_phase(read.geometry, states_at(read, state, tag)).phase_rad;
-      tc[static_cast<std::size_t>(read.port)] += std::cos(r);
-      ts[static_cast<std::size_t>(read.port)] += std::sin(r);
-    }
-    // phasor(port) * conj(phasor(first port)): the tag's own offset cancels
-    for (std::size_t p = 1; p < state.ports.size(); ++p) {
-      c[p] += tc[p] * tc[0] + ts[p] * ts[0];
-      s[p] += ts[p] * tc[0] - tc[p] * ts[0];
-    }
-    state.tags[t].offset_rad = std::atan2(ts[0], tc[0]);
-  }
-  for (std::size_t p = 1; p < state.ports.size(); ++p) state.ports[p].offset_rad = std::atan2(s[p], c[p]);
+// Where each tag may be, whatever the ports' offsets are.
+std::vector<PossiblePlaces> places_of(const JointProblem& problem, const JointState& state, const BeamModel& beams,
+                                      const StartOptions& o) {
+  std::vector<PossiblePlaces> places;
+  for (const std::vector<JointRead>& reads : problem.reads)
+    places.push_back(search_places(reads, state, beams, {.range_max_m = o.range_max_m, .max_reads = o.max_reads}));
+  return places;
 }
 
-// Places each tag at its best mode; ports coherent or not.
-void place_tags(const JointProblem& problem, const BeamModel& beams, const StartOptions& o, bool coherent, JointState& state) {
+// Each tag at its best mode, all ports together.
+void place_tags(const JointProblem& problem, const BeamModel& beams, const std::vector<PossiblePlaces>& places,
+                JointState& state) {
+  constexpr std::size_t kModes = 8;
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
-    if (coherent) {
-      const auto modes = find_modes(problem, t, state, beams, {.range_max_m = o.range_max_m, .max_peaks = 8}, true, o.max_reads);
-      if (!modes.empty()) state.tags[t] = modes[0].tag;
-    } else {
-      const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[t], state, beams, false, o.max_reads);
-      const auto peaks = search_near_field(reads, spectrum_options(reads, o.fine_cell_m, o, 1));
-      if (!peaks.empty()) state.tags[t].p_W_X = peaks[0].p_W_X;
-    }
+    const auto modes = find_modes(problem, t, state, beams, places[t].at(state.log_scale), kModes);
+    if (!modes.empty()) state.tags[t] = modes[0].tag;
   }
 }
 
-StartCandidate refine(const JointProblem& problem, const JointState& blank, double log_scale, const BeamModel& beams,
-                      const StartOptions& o) {
-  JointProblem p = problem;
-  p.reference_scale_m = std::exp(log_scale);
-  StartCandidate c;
-  c.state = blank;
-  c.state.log_scale = log_scale;
-  place_tags(p, beams, o, false, c.state);
-  estimate_port_offsets(p, c.state);
-  double cost = solve(p, {.max_iterations = 8}, c.state).cost;
+struct Rough {
+  JointState state;
+  std::shared_ptr<const std::vector<PossiblePlaces>> places;  // of its step of the scale grid
+  double reference_scale_m = 1.0;
+  double cost = 0.0;
+};
+
+// A scale and port offsets at which many tags' reads agree.
+struct Agreement {
+  double log_scale = 0.0;
+  PortOffsets offsets;
+};
+
+void adopt(const JointProblem& problem, const std::vector<PossiblePlaces>& places,
+           const Agreement& agreement, JointState& state) {
+  const std::vector<double>& offset_rad = agreement.offsets.offset_rad;
+  state.log_scale = agreement.log_scale;
+  for (std::size_t p = 0; p < state.ports.size(); ++p) state.ports[p].offset_rad = offset_rad[p];
+  for (std::size_t t = 0; t < places.size(); ++t) {
+    if (places[t].p_W_X.empty()) continue;
+    const TagPlaces tag = phasors_at(problem.reads[t], state, places[t].at(agreement.log_scale));
+    const std::size_t k = best_place(tag, offset_rad);
+    std::complex<double> sum;
+    for (std::size_t p = 0; p < offset_rad.size(); ++p) sum += tag.phasor[k][p] * std::polar(1.0, -offset_rad[p]);
+    state.tags[t].p_W_X = tag.p_W_X[k];
+    state.tags[t].offset_rad = std::arg(sum);
+  }
+}
+
+// The best agreements about one scale of the grid. The grid is too wide for the ports to agree between
+// its steps: places found at a step are carried to finer ones, as all lengths grow with the scale.
+std::vector<Agreement> agreements_about(const JointProblem& problem, JointState state,
+                                        const std::vector<PossiblePlaces>& places, const StartOptions& o) {
+  const double middle = state.log_scale;
+  constexpr int kFiner = 3;
+  std::vector<Agreement> found;
+  for (int step = -kFiner; step <= kFiner; ++step) {
+    state.log_scale = middle + 0.5 * o.log_scale_step * step / kFiner;
+    std::vector<TagPlaces> tags;
+    for (std::size_t t = 0; t < places.size(); ++t) tags.push_back(phasors_at(problem.reads[t], state, places[t].at(state.log_scale)));
+    for (PortOffsets& offsets : scan_port_offsets(tags, state.ports.size(), o.offsets_per_scale))
+      found.push_back({state.log_scale, std::move(offsets)});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Agreement& a, const Agreement& b) { return a.offsets.power > b.offsets.power; });
+  if (found.size() > o.offsets_per_scale) found.resize(o.offsets_per_scale);
+  return found;
+}
+
+// The best agreements of one scale, each with its tags, path bent a little.
+std::vector<Rough> rough_starts(JointProblem problem, const JointState& blank, double log_scale, const BeamModel& beams,
+                                const StartOptions& o) {
+  problem.reference_scale_m = std::exp(log_scale);
+  JointState state = blank;
+  state.log_scale = log_scale;
+  const auto places = std::make_shared<const std::vector<PossiblePlaces>>(places_of(problem, state, beams, o));
+  std::vector<Rough> found;
+  for (const Agreement& agreement : agreements_about(problem, state, *places, o)) {
+    Rough r{state, places, problem.reference_scale_m, 0.0};
+    adopt(problem, *places, agreement, r.state);
+    r.cost = solve(problem, {.max_iterations = 8}, r.state).cost;
+    found.push_back(std::move(r));
+  }
+  return found;
+}
+
+StartCandidate refine(JointProblem problem, Rough rough, const BeamModel& beams) {
+  problem.reference_scale_m = rough.reference_scale_m;
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
-    JointState again = c.state;
-    place_tags(p, beams, o, true, again);
-    const double again_cost = solve(p, {.max_iterations = 10}, again).cost;
-    if (again_cost >= cost) break;
-    cost = again_cost;
-    c.state = again;
+    JointState again = rough.state;
+    place_tags(problem, beams, *rough.places, again);
+    const double cost = solve(problem, {.max_iterations = 10}, again).cost;
+    if (cost >= rough.cost) break;
+    rough.cost = cost;
+    rough.state = again;
   }
-  c.evidence = evidence(p, c.state);
+  StartCandidate c;
+  c.evidence = evidence(problem, rough.state);
+  c.state = std::move(rough.state);
   return c;
 }
 
@@ -155,16 +198,21 @@ std::vector<StartCandidate> find_starts(const JointProblem& problem, const Joint
   }
   std::vector<std::size_t> all(used.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<Rough> rough;
+  for (const ScalePower& s : best_scales(part, blank, all, beams, options))
+    for (Rough& r : rough_starts(part, blank, s.log_scale, beams, options)) rough.push_back(std::move(r));
+  std::stable_sort(rough.begin(), rough.end(), [](const Rough& a, const Rough& b) { return a.cost < b.cost; });
+  if (rough.size() > options.candidates) rough.resize(options.candidates);
   std::vector<StartCandidate> found;
-  for (const ScalePower& s : best_scales(part, blank, all, beams, options)) {
-    StartCandidate c = refine(part, blank, s.log_scale, beams, options);
+  for (Rough& r : rough) {
+    const StartCandidate c = refine(part, r, beams);
     JointState whole = state;
     whole.log_scale = c.state.log_scale;
     whole.time_offset_s = c.state.time_offset_s;
     whole.ports = c.state.ports;
     whole.knots = c.state.knots;
     for (std::size_t i = 0; i < used.size(); ++i) whole.tags[used[i]] = c.state.tags[i];
-    found.push_back({std::move(whole), used, c.evidence});
+    found.push_back({std::move(whole), used, *r.places, c.evidence});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const StartCandidate& a, const StartCandidate& b) { return a.evidence > b.evidence; });

@@ -48,6 +48,7 @@ struct PredictedPhase {
 
 // Antenna position: p_W_A = e^log_scale (n + v tau) + d + exp(theta) R_W_C exp(omega tau) l.
 [[nodiscard]] Eigen::Vector3d antenna_position(const ReadGeometry& geometry, const ReadStates& states);
+[[nodiscard]] double predicted_phase_rad(const ReadGeometry& geometry, const ReadStates& states);  // not wrapped
 [[nodiscard]] PredictedPhase predict_phase(const ReadGeometry& geometry, const ReadStates& states);
 
 }  // namespace rfmvo

@@ -20,9 +20,10 @@ double grid_rad(int i) { return kGridMin_rad * std::pow(kGridRatio, i); }
 using LogLikelihood = std::array<double, kGrid>;
 
 // Restricted likelihood: the four unknowns of the tag are integrated out (-1/2 ln det J^T J).
-double restricted_log_likelihood(const JointProblem& problem, const JointState& state, std::size_t t,
-                                 const TagState& tag, WhitenedTag& whitened) {
-  whiten(problem.reads[t], problem, state, tag, true, whitened);
+// whitened.raws are the tag's.
+double restricted_log_likelihood(const JointProblem& problem, std::size_t t, double sigma_rad, double length_m,
+                                 WhitenedTag& whitened) {
+  whiten_rows(problem.reads[t], problem, condition_chains(problem.reads[t], sigma_rad, length_m), Derivatives::kTag, whitened);
   Eigen::Matrix4d H = 1e-3 * Eigen::Matrix4d::Identity();
   for (const WhitenedRow& row : whitened.rows) H += row.weight * row.tag * row.tag.transpose();
   return -whitened.cost - 0.5 * whitened.log_variance - 0.5 * std::log(H.determinant());
@@ -30,11 +31,9 @@ double restricted_log_likelihood(const JointProblem& problem, const JointState& 
 
 LogLikelihood of_tag(const JointProblem& problem, const JointState& state, std::size_t t, WhitenedTag& whitened) {
   LogLikelihood l{};
-  TagState tag = state.tags[t];
-  for (int i = 0; i < kGrid; ++i) {
-    tag.structured_sigma_rad = grid_rad(i);
-    l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, state, t, tag, whitened);
-  }
+  predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
+  for (int i = 0; i < kGrid; ++i)
+    l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, t, grid_rad(i), problem.correlation_length_m, whitened);
   return l;
 }
 
@@ -80,12 +79,11 @@ double estimate_correlation_length(const JointProblem& problem, const JointState
   constexpr double kSiteLogSigma = 0.5;
   std::array<double, kLengths_m.size()> l{};
   WhitenedTag whitened;
-  JointProblem p = problem;
-  for (std::size_t i = 0; i < l.size(); ++i) {
-    p.correlation_length_m = kLengths_m[i];
-    l[i] = log_normal(kLengths_m[i], usual_m, kSiteLogSigma);
-    for (std::size_t t = 0; t < p.reads.size(); ++t)
-      l[i] += restricted_log_likelihood(p, state, t, state.tags[t], whitened);
+  for (std::size_t i = 0; i < l.size(); ++i) l[i] = log_normal(kLengths_m[i], usual_m, kSiteLogSigma);
+  for (std::size_t t = 0; t < problem.reads.size(); ++t) {
+    predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
+    for (std::size_t i = 0; i < l.size(); ++i)
+      l[i] += restricted_log_likelihood(problem, t, state.tags[t].structured_sigma_rad, kLengths_m[i], whitened);
   }
   const double top = *std::max_element(l.begin(), l.end());
   double sum = 0.0, mean = 0.0;

@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "base/units.hpp"
-#include "estimator/chain_whitening.hpp"
-#include "estimator/joint_solver.hpp"
+#include "estimator/tag_climb.hpp"
 #include "rf/phase.hpp"
 
 namespace rfmvo {
@@ -16,44 +15,28 @@ namespace {
 // Two refined peaks nearer than this are one mode.
 constexpr double kSameMode_m = 0.03;
 // A mode this much less likely than the best (in ln) is no longer carried.
-constexpr double kMaxCostAbove = 12.0;
-
-// The offset that suits the reads best at a position: the angle of the sum of phasors.
-double best_offset(const JointProblem& one, const JointState& state, TagState tag) {
-  tag.offset_rad = 0.0;
-  double c = 0.0, s = 0.0;
-  for (const JointRead& read : one.reads[0]) {
-    const double r = read.phase_rad - predict_phase(read.geometry, states_at(read, state, tag)).phase_rad;
-    c += std::cos(r);
-    s += std::sin(r);
-  }
-  return std::atan2(s, c);
-}
-
-Eigen::Matrix4d conditional_covariance(const JointProblem& one, const JointState& state, const TagState& tag) {
-  WhitenedTag whitened;
-  whiten(one.reads[0], one, state, tag, true, whitened);
-  Eigen::Matrix4d H = 1e-4 * Eigen::Matrix4d::Identity();
-  for (const WhitenedRow& row : whitened.rows) H += row.weight * row.tag * row.tag.transpose();
-  return H.inverse();
-}
+constexpr double kMaxCostAbove = 40.0;
 
 // Local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
-std::vector<TagMode> refine_all(const JointProblem& one, const JointState& state, const TagState& like,
-                                const std::vector<Eigen::Vector3d>& places) {
-  JointState local = state;
+std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
+                                const TagState& like, const BeamModel& beams, const std::vector<Eigen::Vector3d>& places) {
+  TagLikelihood likelihood(reads, problem, state, like.structured_sigma_rad);
   std::vector<TagMode> modes;
   for (const Eigen::Vector3d& place : places) {
-    TagState tag = like;
-    tag.p_W_X = place;
-    tag.offset_rad = best_offset(one, state, tag);
-    local.tags = {tag};
-    const SolverReport report = solve(one, {.max_iterations = 10, .shared_fixed = true}, local);
+    const TagLikelihood::Maximum top = likelihood.climb(place);
     const bool known = std::any_of(modes.begin(), modes.end(), [&](const TagMode& m) {
-      return (m.tag.p_W_X - local.tags[0].p_W_X).norm() < kSameMode_m;
+      return (m.tag.p_W_X - top.p_W_X).norm() < kSameMode_m;
     });
-    if (known || !local.tags[0].p_W_X.allFinite()) continue;
-    modes.push_back({local.tags[0], conditional_covariance(one, state, local.tags[0]), report.cost, 0.0});
+    // A climb may leave the grid that it started on.
+    constexpr double kMostReads = 0.5;
+    if (known || !top.p_W_X.allFinite() || likelihood.share_within(beams.range_max_m, top.p_W_X) < kMostReads) continue;
+    TagState tag = like;
+    tag.p_W_X = top.p_W_X;
+    tag.offset_rad = top.offset_rad;
+    const double signal_cost = signal_strength_cost(reads, state, beams, top.p_W_X);
+    // Laplace: the height of the mode times the volume that it holds.
+    const double log_evidence = 0.5 * std::log(std::max(top.covariance.determinant(), 1e-300)) - top.cost - signal_cost;
+    modes.push_back({tag, top.covariance, top.cost, signal_cost, log_evidence, 0.0});
   }
   std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.cost < b.cost; });
   while (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove) modes.pop_back();
@@ -64,14 +47,10 @@ std::vector<TagMode> refine_all(const JointProblem& one, const JointState& state
 }  // namespace
 
 void weigh_modes(std::vector<TagMode>& modes) {
-  double sum = 0.0, best = std::numeric_limits<double>::infinity();
-  for (const TagMode& m : modes) best = std::min(best, m.cost);
-  for (TagMode& m : modes) {
-    // Laplace: the volume that the mode holds, times its height.
-    m.weight = std::exp(best - m.cost) * std::sqrt(std::max(m.covariance.topLeftCorner<3, 3>().determinant(), 0.0));
-    sum += m.weight;
-  }
-  for (TagMode& m : modes) m.weight = sum > 0.0 ? m.weight / sum : 0.0;
+  double sum = 0.0, best = -std::numeric_limits<double>::infinity();
+  for (const TagMode& m : modes) best = std::max(best, m.log_evidence);
+  for (TagMode& m : modes) sum += m.weight = std::exp(m.log_evidence - best);
+  for (TagMode& m : modes) m.weight /= sum;
   std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.weight > b.weight; });
 }
 
@@ -95,27 +74,41 @@ std::vector<SpectrumRead> spectrum_reads(const std::vector<JointRead>& reads, co
   return out;
 }
 
+std::vector<Eigen::Vector3d> PossiblePlaces::at(double other_log_scale) const {
+  std::vector<Eigen::Vector3d> grown = p_W_X;
+  for (Eigen::Vector3d& p : grown) p *= std::exp(other_log_scale - log_scale);
+  return grown;
+}
+
+PossiblePlaces search_places(const std::vector<JointRead>& all, const JointState& state, const BeamModel& beams,
+                             const PlaceOptions& options) {
+  const std::vector<SpectrumRead> reads = spectrum_reads(all, state, beams, false, options.max_reads);
+  PossiblePlaces found{{}, state.log_scale};
+  const SpectrumOptions grid{.cell_m = suitable_cell(reads, options.finest_m, options.widest_m),
+                             .range_max_m = options.range_max_m,
+                             .max_peaks = options.count};
+  for (const SpectrumPeak& peak : search_near_field(reads, grid)) found.p_W_X.push_back(peak.p_W_X);
+  return found;
+}
+
 std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
-                                const BeamModel& beams, SpectrumOptions options, bool coherent,
-                                std::size_t max_reads) {
-  JointProblem one = problem;
-  one.reads = {problem.reads[index]};
-  const std::vector<SpectrumRead> reads = spectrum_reads(one.reads[0], state, beams, coherent, max_reads);
-  constexpr double kFinest_m = 0.06, kWidest_m = 0.2;
-  options.cell_m = suitable_cell(reads, kFinest_m, kWidest_m);
-  const std::vector<SpectrumPeak> peaks = search_near_field(reads, options);
-  std::vector<Eigen::Vector3d> places;
-  for (const SpectrumPeak& peak : peaks) places.push_back(peak.p_W_X);
-  return refine_all(one, state, state.tags[index], places);
+                                const BeamModel& beams, const std::vector<Eigen::Vector3d>& places, std::size_t count) {
+  constexpr std::size_t kReads = 64;
+  const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[index], state, beams, true, kReads);
+  std::vector<SpectrumPeak> ranked;
+  for (const Eigen::Vector3d& p : places) ranked.push_back({p, near_field_power(reads, p), 0.0});
+  std::stable_sort(ranked.begin(), ranked.end(), [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
+  if (ranked.size() > count) ranked.resize(count);
+  std::vector<Eigen::Vector3d> best;
+  for (const SpectrumPeak& peak : ranked) best.push_back(peak.p_W_X);
+  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, best);
 }
 
 std::vector<TagMode> refresh_modes(const JointProblem& problem, std::size_t index, const JointState& state,
-                                   const std::vector<TagMode>& modes) {
-  JointProblem one = problem;
-  one.reads = {problem.reads[index]};
+                                   const BeamModel& beams, const std::vector<TagMode>& modes) {
   std::vector<Eigen::Vector3d> places;
   for (const TagMode& mode : modes) places.push_back(mode.tag.p_W_X);
-  return refine_all(one, state, state.tags[index], places);
+  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, places);
 }
 
 }  // namespace rfmvo

@@ -1,0 +1,125 @@
+// JointSegment: where it starts from, and whether another start explains the reads as well.
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.hpp"
+#include "estimator/electrical_length.hpp"
+#include "estimator/joint_segment.hpp"
+
+namespace rfmvo {
+namespace {
+
+constexpr double kMeanTagDistance_m = 2.0;  // part of what hops measure as electrical length
+constexpr double kOtherScale = 0.035;       // of ln(scale): farther apart is another scale
+constexpr double kMaterialScale = 0.1;      // nearer ones compete, but leave the scale known
+
+}  // namespace
+
+void JointSegment::estimate_electrical_lengths() {
+  for (std::size_t p = 0; p < shared_.ports.size(); ++p) {
+    std::vector<std::vector<TimedPhase>> chains;
+    for (const auto& [epc, tag] : tags_) {
+      std::vector<TimedPhase>& chain = chains.emplace_back();
+      for (const SegmentTag::Read& r : tag.chains[p])
+        chain.push_back({r.time_s, r.read.phase_rad, r.read.geometry.frequency_term_rad_m});
+    }
+    const ElectricalLength hops = electrical_length_from_hops(chains);
+    constexpr double kMinCoherence = 0.2;
+    if (hops.coherence > kMinCoherence)
+      shared_.ports[p].electrical_length_m = std::max(0.0, hops.length_m - kMeanTagDistance_m);
+  }
+}
+
+std::vector<StartCandidate> JointSegment::search_starts() {
+  estimate_electrical_lengths();
+  std::vector<Epc> all;
+  for (const auto& [epc, tag] : tags_) all.push_back(epc);
+  StartOptions options;
+  // The cart's mean speed bounds the scale before any read does.
+  const double speed_V_s = path_.arc_V() / (path_.poses().back().time - start_time_).seconds();
+  options.log_scale_min = std::log(std::max(config_.joint.scale_min_m, config_.joint.speed_min_m_s / speed_V_s));
+  options.log_scale_max = std::log(std::min(config_.joint.scale_max_m, config_.joint.speed_max_m_s / speed_V_s));
+  options.range_max_m = config_.joint.tag_range_max_m;
+  // While the scale is open the path bends in a few places only.
+  constexpr double kIntervals = 4.0;
+  const double spacing_V = 1.001 * path_.arc_V() / kIntervals;
+  knot_spacing_V_ = spacing_V;  // adopt() sets the spacing of the solution
+  JointState state = state_for(all);
+  state.knots.assign(path_.intervals(spacing_V).size() + 1, {});
+  std::vector<StartCandidate> found = find_starts(problem_for(all, 1.0), state, beams_, options);
+  std::erase_if(found, [](const StartCandidate& c) { return c.evidence < 0.0; });
+  return found;
+}
+
+void JointSegment::adopt(const StartCandidate& candidate) {
+  std::size_t t = 0;
+  for (auto& [epc, tag] : tags_) {
+    tag.state = candidate.state.tags[t];
+    const auto used = std::find(candidate.used.begin(), candidate.used.end(), t);
+    tag.placed = used != candidate.used.end();
+    if (tag.placed) {
+      tag.places = candidate.places[static_cast<std::size_t>(used - candidate.used.begin())];
+      tag.reads_at_places = tag.reads;
+    }
+    tag.modes.clear();
+    tag.reads_at_modes = 0;
+    tag.joined = false;
+    ++t;
+  }
+  shared_ = candidate.state;
+  shared_.tags.clear();
+  shared_.knots.assign(1, {});
+  knot_spacing_V_ = config_.joint.knot_spacing_m / std::exp(shared_.log_scale);
+  covariance_ = {};
+  started_ = true;
+}
+
+bool JointSegment::start() {
+  std::size_t tags_to_start_from = 0;
+  for (const auto& [epc, tag] : tags_) tags_to_start_from += tag.reads >= kMinReads ? 1 : 0;
+  if (path_.arc_V() <= next_start_arc_V_ || tags_to_start_from == 0) return false;
+  next_start_arc_V_ = 1.5 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
+  const std::vector<StartCandidate> found = search_starts();
+  if (found.empty()) return false;
+  evidence_margin_ = found[0].evidence;
+  for (const StartCandidate& c : found)
+    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kMaterialScale)
+      evidence_margin_ = std::min(evidence_margin_, found[0].evidence - c.evidence);
+  adopt(found[0]);
+  return true;
+}
+
+// At the end: does another start explain all reads better, or as well with another scale?
+void JointSegment::consider_rivals() {
+  double best = total_evidence(), second = 0.0;
+  constexpr double kWorthATry = 60.0;  // nats below the best start
+  JointSegment rival = *this;
+  double first_evidence = 0.0;
+  for (const StartCandidate& c : rival.search_starts()) {
+    if (first_evidence == 0.0) first_evidence = c.evidence;
+    if (c.evidence < first_evidence - kWorthATry) break;
+    rival = *this;
+    rival.adopt(c);
+    rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
+    const auto material = [&] { return std::abs(rival.shared_.log_scale - shared_.log_scale) > kMaterialScale; };
+    double e = rival.total_evidence();
+    if (getenv("DBG")) printf("   rival start %.4f ev %.1f -> %.4f ev %.1f (best %.1f)\n", std::exp(c.state.log_scale), c.evidence, rival.scale_m_per_unit(), e, best);
+    if (e > best - 30) {
+      rival.iterate(true);
+      e = rival.total_evidence();
+    if (getenv("DBG")) printf("   rival thorough %.4f ev %.1f (best %.1f)\n", rival.scale_m_per_unit(), e, best);
+    }
+    if (e > best) {
+      if (material()) second = std::max(second, best);
+      best = e;
+      const auto revision = revision_;
+      *this = rival;
+      revision_ = revision;
+    } else if (material()) {
+      second = std::max(second, e);
+    }
+  }
+  evidence_margin_ = best - second;
+}
+
+}  // namespace rfmvo
