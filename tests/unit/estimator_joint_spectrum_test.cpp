@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "base/units.hpp"
 #include "estimator/near_field_spectrum.hpp"
+#include "kernels/spherical_wave_spectrum.hpp"
 #include "unit/estimator_joint_scene.hpp"
 
 namespace rfmvo {
@@ -36,7 +38,7 @@ SpectrumOptions all_reads(std::span<const SpectrumRead> reads) {
 
 TEST(NearFieldSpectrum, PowerIsTheNumberOfReadsAtTheTruthAndNowhereMore) {
   const auto reads = reads_of(kTag, 30);
-  // 1 / reads in float: 60 to 6e-8, twice. Phases in float are off by some 1e-6 turns and enter squared.
+  // Phases in float are off by some 1e-6 turns and enter squared.
   EXPECT_NEAR(near_field_power(reads, kTag), 60.0, 1e-5);
   std::mt19937 random(61);
   for (int i = 0; i < 1000; ++i) EXPECT_LE(near_field_power(reads, kTag + random_vector(random, 2.0)), 60.0 + 1e-5);
@@ -66,7 +68,7 @@ TEST(NearFieldSpectrum, ReadsOfOneGroupMustAgreeOnTheirOffset) {
   EXPECT_NEAR(near_field_power(reads, kTag), 40.0 * std::pow(std::cos(0.3 * joint_scene::kPi), 2), 1e-3);
 }
 
-TEST(NearFieldSpectrum, SearchInFloatIsThePowerInDouble) {
+TEST(NearFieldSpectrum, SearchInFixedPointIsThePowerInDouble) {
   std::mt19937 random(63);
   for (int n = 0; n < 4; ++n) {
     auto reads = reads_of(kTag, 25);
@@ -77,10 +79,10 @@ TEST(NearFieldSpectrum, SearchInFloatIsThePowerInDouble) {
     options.max_peaks = 200;
     const auto peaks = search_near_field(reads, options);
     ASSERT_GT(peaks.size(), 20U);
-    // sine and cosine are good to 2e-4 each (near_field_spectrum.cpp), so a phasor to 3e-4; distances of up to 40
-    // turns in float add 2 pi 1e-5. Power per read is at most |mean phasor|^2: twice the error of one phasor.
+    // The kernel's bound, and half a code of rounding every phase.
+    const double bound = kMeanPowerMaxAbsError + 2.0 * 0.5 * kTwoPi / kBinaryAnglesPerTurn;
     for (const SpectrumPeak& peak : peaks)
-      EXPECT_NEAR(peak.power / 50.0, near_field_power(reads, peak.p_W_X) / 50.0, 2.0 * (3e-4 + 7e-5));
+      EXPECT_NEAR(peak.power / 50.0, near_field_power(reads, peak.p_W_X) / 50.0, bound);
   }
 }
 
