@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "bound/bound.hpp"
 #include "evaluate/evaluation.hpp"
 #include "simulate/simulation.hpp"
 
@@ -20,7 +21,7 @@ struct Options {
   std::size_t jobs = 1;             // worker threads; the result does not depend on them
   std::string estimator = "joint";  // joint | paper
   bool own_odometry = false;        // from frames; else the simulated drifting camera poses
-  bool known_path = false;          // estimate once more with camera poses that do not drift
+  bool known_path = false;          // estimate once more with the true path (its unit unknown), and told so
   std::string config_toml;          // over the defaults; content, not a path
   std::string config_name;          // of that content, for errors
 };
@@ -38,6 +39,8 @@ struct SeedRun {
   std::size_t reads = 0;
   evaluate::Evaluation evaluation;
   std::optional<evaluate::Evaluation> known_path;
+  // Nothing: this kind of run has none (bound/world.hpp); the second one only with known_path.
+  std::optional<bound::Bound> bound, known_path_bound;
   Timing timing;
 };
 

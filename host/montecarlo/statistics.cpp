@@ -23,8 +23,14 @@ double quantile(std::vector<double> values, double share) {
   return *place;
 }
 
+// Tags that have both.
+struct Compared {
+  std::vector<double> errors_m, bounds_m;
+};
+
 struct Pool {
-  std::vector<double> errors_m, known_path_m, nees, scale_errors, read_s;
+  std::vector<double> errors_m, known_path_m, nees, scale_errors, scale_bounds, read_s;
+  Compared unknown_path, known_path;
   std::size_t compared = 0, inside = 0;
 };
 
@@ -47,6 +53,15 @@ void add_tag(const evaluate::TagEvaluation& tag, Statistics& s, Pool& pool) {
   if (*tag.camera_relative_error_m > kMatters_m) ++s.unflagged_wrong_that_matters;
 }
 
+// Both lists are in the truth's order.
+void add_bound(const evaluate::TagsEvaluation& tags, const bound::Bound& bound, Compared& compared) {
+  for (std::size_t i = 0; i < tags.tags.size(); ++i) {
+    if (!tags.tags[i].camera_relative_error_m || !bound.tags[i].sigma_m) continue;
+    compared.bounds_m.push_back(*bound.tags[i].sigma_m);
+    compared.errors_m.push_back(*tags.tags[i].camera_relative_error_m);
+  }
+}
+
 void add_run(const SeedRun& run, Statistics& s, Pool& pool) {
   for (const auto& tag : run.evaluation.tags.tags) add_tag(tag, s, pool);
   if (run.known_path) {
@@ -54,7 +69,15 @@ void add_run(const SeedRun& run, Statistics& s, Pool& pool) {
       if (tag.camera_relative_error_m) pool.known_path_m.push_back(*tag.camera_relative_error_m);
     }
   }
-  if (run.evaluation.scale.relative_error) pool.scale_errors.push_back(*run.evaluation.scale.relative_error);
+  if (run.bound) {
+    s.unbounded += run.bound->unbounded;
+    add_bound(run.evaluation.tags, *run.bound, pool.unknown_path);
+  }
+  if (run.known_path && run.known_path_bound) add_bound(run.known_path->tags, *run.known_path_bound, pool.known_path);
+  if (run.evaluation.scale.relative_error) {
+    pool.scale_errors.push_back(*run.evaluation.scale.relative_error);
+    if (run.bound && run.bound->scale_relative) pool.scale_bounds.push_back(*run.bound->scale_relative);
+  }
   pool.read_s.insert(pool.read_s.end(), run.timing.read_s.begin(), run.timing.read_s.end());
 }
 
@@ -90,6 +113,12 @@ Statistics statistics_of(const std::vector<SeedRun>& runs, const Options& option
   s.seeds = runs.size();
   for (const SeedRun& run : runs) add_run(run, s, pool);
   s.error_m = evaluate::summarise(pool.errors_m);
+  if (const auto bounds = evaluate::summarise(pool.unknown_path.bounds_m)) {
+    s.bound_rmse_m = bounds->rmse;
+    s.bound_median_m = bounds->median;
+    s.ratio = evaluate::summarise(pool.unknown_path.errors_m)->rmse / bounds->rmse;
+  }
+  if (const auto bounds = evaluate::summarise(pool.known_path.bounds_m)) s.known_path_bound_rmse_m = bounds->rmse;
   if (const auto known = evaluate::summarise(pool.known_path_m)) s.known_path_rmse_m = known->rmse;
   if (pool.compared > 0) s.coverage95 = static_cast<double>(pool.inside) / static_cast<double>(pool.compared);
   if (const auto nees = evaluate::summarise(pool.nees)) {
@@ -97,6 +126,7 @@ Statistics statistics_of(const std::vector<SeedRun>& runs, const Options& option
     s.nees_median = nees->median;
   }
   if (const auto scale = evaluate::summarise(pool.scale_errors)) s.scale_rms_relative = scale->rmse;
+  if (const auto bounds = evaluate::summarise(pool.scale_bounds)) s.scale_bound_rms_relative = bounds->rmse;
   s.scales = pool.scale_errors.size();
   const bool images = !options.simulation.images_dir.empty();
   if (images || !simulate::is_degenerate_scene(options.simulation.scene)) s.false_alarms = s.tags - converged(s);

@@ -31,11 +31,14 @@ struct Statistics {
   std::size_t located = 0;                      // status other than TOO_FEW_READS, NO_SCALE
   std::map<std::string, std::size_t> statuses;  // NOT_SEEN: never reported
   std::optional<evaluate::Summary> error_m;
-  // Cramer-Rao bound of the same tags, root of the mean trace; and error_m->rmse over it.
-  std::optional<double> bound_rmse_m, ratio;
-  std::optional<double> known_path_rmse_m;
+  // Cramer-Rao bound (bound/bound.hpp) of the located tags that have one: root of their mean trace; and the
+  // root mean square error of these tags over it.
+  std::optional<double> bound_rmse_m, bound_median_m, ratio;
+  std::size_t unbounded = 0;  // tags without a bound, located or not
+  std::optional<double> known_path_rmse_m, known_path_bound_rmse_m;
   std::optional<double> coverage95, nees_mean, nees_median;
   // Of the recovered path against the true one: RMS over seeds of |Sim(3) scale - 1|.
+  // And its bound, RMS over the same seeds.
   std::optional<double> scale_rms_relative, scale_bound_rms_relative;
   std::size_t scales = 0;  // seeds that have one
   std::size_t unflagged_wrong = 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "simulate/drift.hpp"
+#include "simulate/radio_run.hpp"
 #include "simulate/random.hpp"
 #include "simulate/reader.hpp"
 #include "simulate/scene.hpp"
@@ -36,11 +37,9 @@ Truth truth_of(const Scene& scene) {
 }
 
 std::vector<TagRead> reads_of(const Scene& scene, const Options& options) {
-  const RadioLink link = scene.physical_link ? make_physical_link(scene) : make_statistical_link(scene, options.seed);
-  const std::vector<Singulation> singulations = scene.physical_link ? gen2_inventory(scene, link, options.seed)
-                                                                    : statistical_inventory(scene, link, options.seed);
+  const RadioRun radio = make_radio_run(scene, options.seed);
   const ReaderHardware hardware = draw_hardware(scene.tags.size(), scene.calibration.antennas.size(), options.seed);
-  return report(scene, singulations, link, hardware, options.seed,
+  return report(scene, radio.singulations, radio.link, hardware, options.seed,
                 kEpoch + Duration::from_seconds(options.reader_delay_s),
                 {.flip_share = options.flip_share, .outlier_share = options.outlier_share});
 }
