@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
   rfmvo::add_evaluate_command(app, exit_code);
   rfmvo::add_export_command(app, exit_code);
   rfmvo::add_report_command(app, exit_code);
+  rfmvo::add_montecarlo_command(app, exit_code);
+  rfmvo::add_bound_command(app, exit_code);
   rfmvo::add_vo_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -11,6 +11,8 @@ void add_replay_command(CLI::App& app, int& exit_code);
 void add_evaluate_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
+void add_montecarlo_command(CLI::App& app, int& exit_code);
+void add_bound_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 
 }  // namespace rfmvo

@@ -58,9 +58,10 @@ std::optional<DriftClass> find_drift_class(const std::string& name) {
   return std::nullopt;
 }
 
-DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std::uint64_t seed) {
-  Random scale_random(seed, "odometry scale");
-  Random random(seed, "odometry drift");
+DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std::uint64_t seed,
+                   std::uint64_t part) {
+  Random scale_random(seed, "odometry scale", part);
+  Random random(seed, "odometry drift", part);
   DriftedPoses result;
   const double gamma = std::exp(scale_random.uniform(std::log(kScaleMin_m), std::log(kScaleMax_m)));
   const double bias_sign = scale_random.uniform() < 0.5 ? -1.0 : 1.0;

@@ -28,7 +28,8 @@ struct DriftedPoses {
   double scale_m_per_unit = 1.0;  // gamma
 };
 
-// V is the camera frame of the first pose.
-[[nodiscard]] DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& drift_class, std::uint64_t seed);
+// V is the camera frame of the first pose. Each part of an interrupted path has its own random numbers.
+[[nodiscard]] DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& drift_class, std::uint64_t seed,
+                                 std::uint64_t part = 0);
 
 }  // namespace rfmvo::simulate

@@ -29,10 +29,12 @@ struct ReaderHardware {
 };
 [[nodiscard]] ReaderHardware draw_hardware(std::size_t tags, std::size_t ports, std::uint64_t seed);
 
-// What is switched off for tests of the parts.
+// What goes wrong with a phase; switched off for tests of the parts, raised for stress.
 struct ReaderNoise {
   bool white = true;
   bool flips = true;
+  double flip_share = Options{}.flip_share;        // of the reads
+  double outlier_share = Options{}.outlier_share;  // of the reads: a phase drawn from the whole turn
 };
 
 // Reports in time order; times are on the scene's clock (epoch added by the caller's `start`).

@@ -7,11 +7,17 @@ namespace rfmvo::simulate {
 constexpr double kFrameRate_hz = 30.0;  // the paper's camera, Section VII-A
 
 std::vector<std::string> scene_names() {
-  return {"aisle",         "wall",         "S3",         "S6",     "straight", "straight1ant",
+  return {"aisle",         "wall",         "S3",         "S6",     "straight", "straight1ant", "oneantenna",
           "stackedmirror", "purerotation", "standstill", "onetag", "tags300"};
 }
 
-Result<Scene> make_scene(const Options& options) {
+bool is_degenerate_scene(const std::string& name) {
+  return is_stacked_scene(name) && name != "S3" && name != "S6" && name != "tags300";
+}
+
+namespace {
+
+Result<Scene> make_family(const Options& options) {
   if (!options.images_dir.empty()) return make_image_scene(options);
   if (options.scene == "aisle") return make_aisle_scene(options);
   if (options.scene == "wall") return make_wall_scene(options);
@@ -19,6 +25,22 @@ Result<Scene> make_scene(const Options& options) {
   std::string known;
   for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;
   return Error{ErrorCode::kUnknownKey, "unknown scene '" + options.scene + "'; known: " + known, "--scene"};
+}
+
+}  // namespace
+
+Result<Scene> make_scene(const Options& options) {
+  Result<Scene> made = make_family(options);
+  if (!made.ok()) return made;
+  Scene scene = std::move(made).value();
+  if (options.tags != 0 && scene.tags.size() != options.tags)
+    return Error{ErrorCode::kUnsupported, "the tags of scene '" + scene.name + "' are part of its surroundings",
+                 "--tags"};
+  if (options.structured_rad && scene.physical_link)
+    return Error{ErrorCode::kUnsupported, "phase errors in scene '" + scene.name + "' come from its surroundings",
+                 "--structured-rad"};
+  scene.structured_sigma_rad = options.structured_rad.value_or(scene.structured_sigma_rad);
+  return scene;
 }
 
 Epc epc_of(std::size_t n) {

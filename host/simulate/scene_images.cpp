@@ -7,7 +7,7 @@
 namespace rfmvo::simulate {
 namespace {
 
-constexpr std::size_t kTags = 8;
+constexpr std::size_t kTags = 8;  // unless told otherwise
 constexpr double kNear_m = 1.2, kFar_m = 2.2, kAcross_m = 0.8;  // tags in front of the path
 constexpr double kBeamCosine = 0.574;                           // 55 degrees: well inside the beam
 constexpr double kReadableShare = 0.4;                          // of the time, by both antennas
@@ -40,8 +40,8 @@ double readable_share(const Scene& scene) {
 }
 
 // Seen from a pose drawn along the path; of several draws the first that is readable long enough.
-void place_tags(Scene& scene, Random& random) {
-  for (std::size_t n = 0; n < kTags; ++n) {
+void place_tags(Scene& scene, std::size_t count, Random& random) {
+  for (std::size_t n = 0; n < count; ++n) {
     scene.tags.push_back({epc_of(n + 1), Eigen::Vector3d::Zero()});
     double best_share = -1.0;
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
@@ -84,7 +84,7 @@ Result<Scene> make_image_scene(const Options& options) {
     return frame;
   };
   Random random(options.seed, "tag positions");
-  place_tags(scene, random);
+  place_tags(scene, options.tags != 0 ? options.tags : kTags, random);
   return scene;
 }
 

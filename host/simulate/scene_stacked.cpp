@@ -28,7 +28,7 @@ Shape shape_of(const std::string& name) {
   Shape s;
   if (name == "S6") s.structured_sigma_rad = 0.6;
   if (name == "straight" || name == "straight1ant" || name == "stackedmirror") s.weave_m = 0.0;
-  if (name == "straight1ant") s.antennas = 1;
+  if (name == "straight1ant" || name == "oneantenna") s.antennas = 1;
   if (name == "stackedmirror") s.forward_looking = true;
   if (name == "purerotation") s.motion = Shape::kTurn;
   if (name == "standstill") s.motion = Shape::kStand;
@@ -74,7 +74,8 @@ bool is_stacked_scene(const std::string& name) {
 }
 
 Scene make_stacked_scene(const Options& options) {
-  const Shape shape = shape_of(options.scene);
+  Shape shape = shape_of(options.scene);
+  if (options.tags != 0) shape.tags = options.tags;
   Scene scene;
   scene.name = options.scene;
   scene.structured_sigma_rad = shape.structured_sigma_rad;

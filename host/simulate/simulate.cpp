@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "simulate/drift.hpp"
+#include "simulate/radio_run.hpp"
 #include "simulate/random.hpp"
 #include "simulate/reader.hpp"
 #include "simulate/scene.hpp"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr DeviceTime kEpoch{1'767'225'600'000'000'000};  // 2026-01-01 00:00 UTC
 constexpr double kTick_s = 1.0;
+constexpr double kMaxGapShare = 0.5;  // of the run, so that a path is left on both sides
 
 // Journals count microseconds.
 DeviceTime at(double t_s) { return kEpoch + Duration{std::llround(t_s * 1e6) * 1000}; }
@@ -35,12 +37,38 @@ Truth truth_of(const Scene& scene) {
 }
 
 std::vector<TagRead> reads_of(const Scene& scene, const Options& options) {
-  const RadioLink link = scene.physical_link ? make_physical_link(scene) : make_statistical_link(scene, options.seed);
-  const std::vector<Singulation> singulations = scene.physical_link ? gen2_inventory(scene, link, options.seed)
-                                                                    : statistical_inventory(scene, link, options.seed);
+  const RadioRun radio = make_radio_run(scene, options.seed);
   const ReaderHardware hardware = draw_hardware(scene.tags.size(), scene.calibration.antennas.size(), options.seed);
-  return report(scene, singulations, link, hardware, options.seed,
-                kEpoch + Duration::from_seconds(options.reader_delay_s));
+  return report(scene, radio.singulations, radio.link, hardware, options.seed,
+                kEpoch + Duration::from_seconds(options.reader_delay_s),
+                {.flip_share = options.flip_share, .outlier_share = options.outlier_share});
+}
+
+// Open interval in the middle of the run without a frame; empty for a length of 0.
+struct FrameGap {
+  double from_s, to_s;
+  [[nodiscard]] bool holds(double t_s) const { return from_s < t_s && t_s < to_s; }
+};
+
+FrameGap frame_gap(const Scene& scene, double length_s) {
+  const double middle_s = 0.5 * (scene.start_s() + scene.end_s());
+  return {middle_s - 0.5 * length_s, middle_s + 0.5 * length_s};
+}
+
+// After a gap the odometry starts anew: a new segment, with its own V and scale.
+DriftedPoses drift_around(const FrameGap& gap, const Truth& truth, const DriftClass& c, std::uint64_t seed) {
+  if (gap.from_s >= gap.to_s) return drift(truth.trajectory, c, seed);
+  std::vector<TruePose> before, after;
+  for (const TruePose& pose : truth.trajectory) {
+    if (pose.time <= at(gap.from_s)) before.push_back(pose);
+    if (pose.time >= at(gap.to_s)) after.push_back(pose);
+  }
+  DriftedPoses drifted = drift(before, c, seed);
+  for (CameraPose& pose : drift(after, c, seed, 1).poses) {
+    pose.segment = 1;
+    drifted.poses.push_back(pose);
+  }
+  return drifted;
 }
 
 // Everything but the frames, which are made one at a time when their turn comes.
@@ -54,9 +82,11 @@ std::vector<Event> small_events(const Scene& scene, const Options& options, cons
   return events;
 }
 
-Status feed(const Scene& scene, bool with_frames, const std::vector<Event>& events, const Sink& sink) {
+Status feed(const Scene& scene, bool with_frames, const FrameGap& gap, const std::vector<Event>& events,
+            const Sink& sink) {
   std::size_t next = 0;
   for (std::size_t k = 0; k < scene.frame_times_s.size() && with_frames; ++k) {
+    if (gap.holds(scene.frame_times_s[k])) continue;
     const DeviceTime time = at(scene.frame_times_s[k]);
     for (; next < events.size() && time_of(events[next]) < time; ++next) {
       if (Status s = sink(events[next]); !s.ok()) return s;
@@ -88,9 +118,12 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   if (!made.ok()) return made.error();
   const Scene scene = std::move(made).value();
   const bool with_frames = options.frames && scene.frame;
+  if (options.frame_gap_s > kMaxGapShare * (scene.end_s() - scene.start_s()))
+    return Error{ErrorCode::kOutOfRange, "is more than half of the run", "--frame-gap-s"};
+  const FrameGap gap = frame_gap(scene, options.frame_gap_s);
 
   Truth truth = truth_of(scene);
-  const DriftedPoses drifted = drift(truth.trajectory, *drift_class, options.seed);
+  const DriftedPoses drifted = drift_around(gap, truth, *drift_class, options.seed);
   truth.scale_m_per_unit = drifted.scale_m_per_unit;
 
   Start start;
@@ -98,7 +131,8 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   start.config.estimator.pose_source = with_frames ? "frames" : "poses";
   start.calibration = nominal_of(scene.calibration, options.seed);
   if (Status s = sink(start); !s.ok()) return s.error();
-  if (Status s = feed(scene, with_frames, small_events(scene, options, drifted.poses), sink); !s.ok()) return s.error();
+  if (Status s = feed(scene, with_frames, gap, small_events(scene, options, drifted.poses), sink); !s.ok())
+    return s.error();
   return truth;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,12 @@ struct Options {
   std::string vo_class = "NOMINAL";  // drift of the CameraPose events: PERFECT | BEST | NOMINAL | DEGRADED | BAD
   bool frames = true;                // false: no Frame events (fast; for replay from poses)
   double reader_delay_s = 0.0;       // read stamps are late by this much against the camera's
+  // Stress. Each draws from a stream of its own: what it does not touch stays as it was.
+  double outlier_share = 0.0;            // of the reads: a phase that tells nothing (uniform)
+  double flip_share = 0.003;             // of the reads: turned by pi, in bursts; measured, DESIGN 2.8
+  double frame_gap_s = 0.0;              // no frame and no camera pose for this long, in the middle of the run
+  std::optional<double> structured_rad;  // strength of the structured phase error; nothing: the scene's own
+  std::size_t tags = 0;                  // 0: the scene's own number
 };
 
 struct TrueTag {
@@ -43,6 +50,8 @@ struct Truth {
 
 [[nodiscard]] std::vector<std::string> scene_names();
 [[nodiscard]] std::vector<std::string> vo_class_names();
+// Scenes in which position or scale of some tag is not observable, or ambiguous, on purpose.
+[[nodiscard]] bool is_degenerate_scene(const std::string& name);
 
 using Sink = std::function<Status(const Event&)>;
 

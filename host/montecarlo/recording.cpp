@@ -1,0 +1,60 @@
+#include "montecarlo/recording.hpp"
+
+#include "config/config_table.hpp"
+#include "edges/lcm_codec.hpp"
+#include "edges/toml_files.hpp"
+#include "vision/visual_odometry.hpp"
+
+namespace rfmvo::montecarlo {
+
+Result<std::vector<CameraPose>> odometry_of(const simulate::Options& options) {
+  simulate::Options with_frames = options;
+  with_frames.frames = true;
+  std::optional<VisualOdometry> odometry;
+  std::vector<CameraPose> poses;
+  const auto truth = simulate::simulate(with_frames, [&](const Event& event) -> Status {
+    if (const auto* start = std::get_if<Start>(&event)) {
+      if (start->config.estimator.pose_source != "frames")
+        return Error{ErrorCode::kUnsupported, "the scene has no frames", "--from frames"};
+      odometry.emplace(start->config.vision, start->calibration.camera);
+    } else if (const auto* frame = std::get_if<Frame>(&event)) {
+      Frame decoded = *frame;
+      if (const Status status = decode_image(decoded); !status) return status;
+      poses.push_back(odometry->on(decoded));
+    }
+    return Done{};
+  });
+  if (!truth) return truth.error();
+  return poses;
+}
+
+// Frames and simulated poses have the same times, so one pose takes the place of the other.
+Result<Recording> record(const simulate::Options& options, const std::vector<CameraPose>* odometry) {
+  simulate::Options without_frames = options;
+  without_frames.frames = false;
+  Recording recording;
+  std::size_t next = 0;
+  auto truth = simulate::simulate(without_frames, [&](const Event& event) -> Status {
+    if (odometry == nullptr || !std::holds_alternative<CameraPose>(event)) {
+      recording.events.push_back(event);
+    } else if (next < odometry->size()) {
+      recording.events.emplace_back((*odometry)[next++]);
+    }
+    return Done{};
+  });
+  if (!truth) return truth.error();
+  recording.truth = std::move(truth).value();
+  return recording;
+}
+
+Result<Config> config_for(const Config& recorded, const Options& options) {
+  auto read = parse_config(options.config_toml, options.config_name, recorded);
+  if (!read) return read.error();
+  Config config = std::move(read).value();
+  config.estimator.kind = options.estimator;
+  config.estimator.pose_source = "poses";
+  if (const Status s = check_consistency(config); !s) return s.error();
+  return config;
+}
+
+}  // namespace rfmvo::montecarlo
