@@ -26,11 +26,8 @@ Status run(const Arguments& arguments) {
       arguments.time_offset_sigma_s.value_or(bound::settings_for(arguments.simulation).time_offset_sigma_s);
   known.known_path = true;
   const bound::BoundPair bounds{bound::bound_of(world.value(), unknown), bound::bound_of(world.value(), known)};
-  if (!arguments.json.empty()) {
-    if (const Status s = write_whole_file(arguments.json, bound::to_json(bounds)); !s) return s;
-  }
   std::fputs(bound::to_table(bounds).c_str(), stdout);
-  return Done{};
+  return arguments.json.empty() ? Done{} : write_whole_file(arguments.json, bound::to_json(bounds));
 }
 
 void add_model_options(CLI::App& command, Arguments& arguments) {

@@ -39,12 +39,10 @@ Status run(Arguments& arguments) {
   }();
   if (!runs) return runs.error();
   const montecarlo::Statistics statistics = montecarlo::statistics_of(runs.value(), options);
-  if (!arguments.json.empty()) {
-    const Status written = write_whole_file(arguments.json, montecarlo::to_json(options, runs.value(), statistics));
-    if (!written) return written;
-  }
+  // The table first: hours of seeds are not lost to a full disk.
   std::fputs(montecarlo::to_table(runs.value(), statistics).c_str(), stdout);
-  return Done{};
+  if (arguments.json.empty()) return Done{};
+  return write_whole_file(arguments.json, montecarlo::to_json(options, runs.value(), statistics));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/units.hpp"
 #include "simulate/random.hpp"
@@ -12,7 +13,7 @@ namespace {
 constexpr double kFirstChannel_hz = 920.625e6, kChannelStep_hz = 0.5e6;
 constexpr double kHopDwell_s = 0.2;
 constexpr double kPortLengthMin_m = 5.0, kPortLengthMax_m = 10.0;
-constexpr double kFlipStay = 0.8;  // pi flips of the reader come in bursts: mean 5 reads of one (tag, port)
+constexpr double kFlipStay = 0.8;            // pi flips of the reader come in bursts: mean 5 reads of one (tag, port)
 constexpr std::int64_t kPhaseCounts = 4096;  // Impinj: 12 bits a turn,
 constexpr std::int64_t kPhaseStep = 2;       // of which only even counts occur
 constexpr std::int64_t kTurnPerCount = 65536 / kPhaseCounts;
@@ -60,18 +61,18 @@ std::vector<TagRead> report(const Scene& scene, const std::vector<Singulation>& 
   Random strength(seed, "rssi");
   Random outliers(seed, "outliers");
   const double flip_enter = noise.flip_share / (1.0 - noise.flip_share) * (1.0 - kFlipStay);
-  std::vector<char> flipped(scene.tags.size() * ports, 0);
+  std::vector<std::optional<bool>> flipped(scene.tags.size() * ports);
   std::vector<TagRead> reads;
   for (const Singulation& s : singulations) {
     const double f_hz = channels.frequency_hz(s.t_s);
     const LinkState state = link(s.t_s, s.antenna, s.tag, f_hz);
-    char& flip = flipped[s.tag * ports + s.antenna];
-    flip = flips.uniform() < (flip ? kFlipStay : flip_enter) ? 1 : 0;
+    std::optional<bool>& flip = flipped[s.tag * ports + s.antenna];
+    flip = flips.uniform() < (!flip ? noise.flip_share : *flip ? kFlipStay : flip_enter);
     double phase_rad = state.phase_rad + hardware.tag_offset_rad[s.tag] + hardware.port_offset_rad[s.antenna] +
                        2.0 * kTwoPi * f_hz * hardware.port_length_m[s.antenna] / kSpeedOfLight_m_s;
     const double white_rad = state.white_sigma_rad * white.normal();
     if (noise.white) phase_rad += white_rad;
-    if (noise.flips && flip) phase_rad += kPi;
+    if (noise.flips && *flip) phase_rad += kPi;
     const double draw = outliers.uniform(), anything_rad = outliers.uniform(0.0, kTwoPi);
     if (draw < noise.outlier_share) phase_rad = anything_rad;
 

@@ -7,8 +7,8 @@ namespace rfmvo::simulate {
 constexpr double kFrameRate_hz = 30.0;  // the paper's camera, Section VII-A
 
 std::vector<std::string> scene_names() {
-  return {"aisle",         "wall",         "S3",         "S6",     "straight", "straight1ant", "oneantenna",
-          "stackedmirror", "purerotation", "standstill", "onetag", "tags300"};
+  return {"aisle",      "wall",          "S3",           "S6",         "straight", "straight1ant",
+          "oneantenna", "stackedmirror", "purerotation", "standstill", "onetag",   "tags300"};
 }
 
 bool is_degenerate_scene(const std::string& name) {

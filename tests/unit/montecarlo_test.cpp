@@ -71,6 +71,23 @@ TEST(MonteCarlo, StatisticsPoolTheTagsOfAllSeeds) {
   EXPECT_FALSE(statistics_of(runs, options).false_alarms.has_value());
 }
 
+TEST(MonteCarlo, BoundIsThatOfTheLocatedTagsThatHaveOne) {
+  evaluate::TagEvaluation unseen;
+  SeedRun run = run_of({tag_of(0.03, 0.02), tag_of(0.04, 0.02), tag_of(0.5, 0.4), unseen}, 0.02);
+  run.bound.emplace();
+  run.bound->tags.resize(4);
+  run.bound->tags[0].sigma_m = 0.01;
+  run.bound->tags[1].sigma_m = 0.02;  // the third has none, the fourth was not located
+  run.bound->tags[3].sigma_m = 5.0;
+  run.bound->unbounded = 1;
+  run.bound->scale_relative = 0.01;
+  const Statistics s = statistics_of({run}, options_of("S3", 1));
+  EXPECT_NEAR(*s.bound_rmse_m, std::sqrt(0.5 * (0.01 * 0.01 + 0.02 * 0.02)), 1e-12);
+  EXPECT_NEAR(*s.ratio, std::sqrt((0.03 * 0.03 + 0.04 * 0.04) / (0.01 * 0.01 + 0.02 * 0.02)), 1e-12);
+  EXPECT_EQ(s.unbounded, 1U);
+  EXPECT_NEAR(*s.scale_bound_rms_relative, 0.01, 1e-15);
+}
+
 TEST(MonteCarlo, AnyNumberOfJobsGivesTheSameResultInOrderOfTheSeeds) {
   Options options = options_of("onetag", 3);
   options.estimator = "paper";
@@ -89,6 +106,7 @@ TEST(MonteCarlo, AnyNumberOfJobsGivesTheSameResultInOrderOfTheSeeds) {
     EXPECT_EQ(runs[0].seed, 5U);
     EXPECT_EQ(runs[2].seed, 7U);
     EXPECT_GT(runs[0].reads, 0U);
+    EXPECT_TRUE(runs[0].bound.has_value());
   }
 }
 
