@@ -60,6 +60,9 @@ struct VisionConfig {
   std::int64_t window_keyframes = 15;     // of the bundle adjustment
   double min_parallax_deg = 1.0;          // of a new map point
   double reprojection_gate_px = 2.0;
+  double k1_sigma = 0.05;                 // of a lens whose calibration states no distortion; 0: k1 stays
+  double readout_s = 0.0;                 // 0: global shutter
+  double readout_sigma_s = 0.02;          // 0: the readout time stays
 };
 
 struct LcmConfig {

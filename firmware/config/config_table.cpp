@@ -117,6 +117,12 @@ const ConfigRow kRows[] = {
      "smallest parallax of a new map point"},
     {"vision.reprojection_gate_px", "px", &at<kVision, &V::reprojection_gate_px>, 0.01, 100, "",
      "a point that is farther from its prediction is an outlier"},
+    {"vision.k1_sigma", "", &at<kVision, &V::k1_sigma>, 0, 1, "",
+     "how far a lens whose calibration states no distortion may be from k1 = 0, 1 sigma; 0: no self-calibration"},
+    {"vision.readout_s", "s", &at<kVision, &V::readout_s>, -0.1, 0.1, "",
+     "time from reading a picture's first row to its last (rolling shutter); 0: global shutter"},
+    {"vision.readout_sigma_s", "s", &at<kVision, &V::readout_sigma_s>, 0, 0.1, "",
+     "how far the true readout time may be from that, 1 sigma; 0: no self-calibration"},
 
     {"lcm.url", "", &at<kLcm, &LcmConfig::url>, 0, 0, "",
      "where estimates are published; ttl=0 stays on this machine"},

@@ -33,6 +33,10 @@ Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector2d& normal
   return {camera.fx_px * d.x() + camera.cx_px, camera.fy_px * d.y() + camera.cy_px};
 }
 
+Eigen::Matrix2d distort_jacobian(const CameraModel& camera, const Eigen::Vector2d& normalised) {
+  return distort_jacobian(camera.radtan, normalised);
+}
+
 Eigen::Vector2d unproject(const CameraModel& camera, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d distorted((pixel.x() - camera.cx_px) / camera.fx_px, (pixel.y() - camera.cy_px) / camera.fy_px);
   Eigen::Vector2d p = distorted;

@@ -16,6 +16,8 @@ struct CameraModel {
 
 // Normalised image plane (x/z, y/z) to pixels.
 [[nodiscard]] Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector2d& normalised);
+// Derivative of the distortion: of project(), without the focal lengths.
+[[nodiscard]] Eigen::Matrix2d distort_jacobian(const CameraModel& camera, const Eigen::Vector2d& normalised);
 // Pixels to the normalised image plane; Newton's iteration, error below 1e-9 for |k1| < 0.4.
 [[nodiscard]] Eigen::Vector2d unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 

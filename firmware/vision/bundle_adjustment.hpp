@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "vision/lens.hpp"
 #include "vision/view_pose.hpp"
 
 namespace rfmvo {
@@ -16,7 +17,16 @@ struct BundleView {
 struct BundleObservation {
   int view = 0;
   int point = 0;
-  Eigen::Vector2d measured;  // normalised image plane, undistorted
+  Eigen::Vector2d measured;                    // normalised image plane, undistorted
+  LensJacobian d_lens = LensJacobian::Zero();  // d measured / d lens
+};
+
+// What all views share: a step of the lens from where `measured` was computed.
+struct BundleLens {
+  bool free = false;
+  LensVector step = LensVector::Zero();
+  LensVector expected = LensVector::Zero();         // of the step
+  LensMatrix information = LensMatrix::Identity();  // of `expected`, px^2
 };
 
 // Observations are sorted by point. At least one view should be fixed; a freedom that nothing holds
@@ -25,6 +35,7 @@ struct BundleProblem {
   std::vector<BundleView> views;
   std::vector<Eigen::Vector3d> points_V;
   std::vector<BundleObservation> observations;
+  BundleLens lens;
 };
 
 struct BundleOptions {
@@ -37,6 +48,7 @@ struct BundleReport {
   double initial_cost = 0.0;  // sum of Huber costs, px^2
   double final_cost = 0.0;
   int iterations = 0;
+  LensMatrix lens_information = LensMatrix::Zero();  // of the images alone, px^2
 };
 
 BundleReport adjust_bundle(BundleProblem& problem, const BundleOptions& options);

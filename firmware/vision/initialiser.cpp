@@ -162,7 +162,7 @@ std::optional<Initialiser::Candidate> Initialiser::build(const TwoViewHypothesis
   candidate.cost_px2 = report.final_cost / static_cast<double>(bundle.observations.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
     const auto id = static_cast<std::int64_t>(v);
-    candidate.map.keyframes.push_back({id, views[v]->time, bundle.views[v].T_C_V, views[v]->pyramid});
+    candidate.map.keyframes.push_back({id, views[v]->time, bundle.views[v].T_C_V, views[v]->pyramid, {}});
     for (const Track& t : views[v]->tracks) {
       candidate.map.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});
     }

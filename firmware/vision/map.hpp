@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/time.hpp"
+#include "vision/lens.hpp"
 #include "vision/optical_flow.hpp"
 #include "vision/view_pose.hpp"
 
@@ -30,6 +31,7 @@ struct Keyframe {
   DeviceTime time;
   ViewPose T_C_V;
   Pyramid pyramid;
+  Twist twist;  // at `time`
 };
 
 struct Map {

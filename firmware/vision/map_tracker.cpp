@@ -30,6 +30,12 @@ void MapTracker::begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std:
   motion_ = relative(newest.T_C_V, before.T_C_V);
   motion_s_ = (newest.time - before.time).seconds();
   pose_time_ = newest.time;
+  for (std::size_t k = 0; k < map_.keyframes.size(); ++k) {
+    const Keyframe& earlier = map_.keyframes[k > 0 ? k - 1 : 0];
+    const Keyframe& later = map_.keyframes[std::min(k + 1, map_.keyframes.size() - 1)];
+    map_.keyframes[k].twist = twist_between(earlier.T_C_V, later.T_C_V, (later.time - earlier.time).seconds());
+  }
+  twist_ = newest.twist;
   fill_up(pyramid);
   update_median_depth();
   previous_ = std::move(pyramid);
@@ -54,19 +60,22 @@ std::vector<cv::Point2f> MapTracker::predict_tracks(const ViewPose& predicted) c
     const Eigen::Vector3d p_C = predicted * p_V;
     result.push_back(t.px);
     if (p_C.z() < kNearest * median_depth_) continue;
-    const Eigen::Vector2d px = project(options_.camera, p_C.hnormalized());
+    const Eigen::Vector2d px = project(lens_.camera(), p_C.hnormalized());
     result.back() = {static_cast<float>(px.x()), static_cast<float>(px.y())};
   }
   return result;
 }
 
-MotionSolution MapTracker::locate_camera(const ViewPose& predicted, std::vector<Track>& followed) const {
+MotionSolution MapTracker::locate_camera(const ViewPose& predicted, DeviceTime time,
+                                         std::vector<Track>& followed) const {
+  const Twist twist = twist_between(T_C_V_, predicted, (time - pose_time_).seconds());
   std::vector<MotionObservation> seen;
   std::vector<std::size_t> track_of;
   for (std::size_t i = 0; i < followed.size(); ++i) {
     const Landmark* landmark = located(followed[i]);
     if (!landmark) continue;
-    seen.push_back({landmark->p_V, followed[i].normalised});
+    const Track& t = followed[i];
+    seen.push_back({landmark->p_V, lens_.at_stamp(t.normalised, t.px.y, predicted * landmark->p_V, twist)});
     track_of.push_back(i);
   }
   const MotionOptions options{options_.mapping.focal_px, kMotionHuber_px, options_.mapping.gate_px};
@@ -88,25 +97,36 @@ MotionSolution MapTracker::locate_camera(const ViewPose& predicted, std::vector<
 
 std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyramid) {
   const ViewPose predicted = predict(time);
-  std::vector<Track> followed = advanced(tracks_, previous_, pyramid, predict_tracks(predicted), options_.camera);
-  MotionSolution s = locate_camera(predicted, followed);
+  std::vector<Track> followed = advanced(tracks_, previous_, pyramid, predict_tracks(predicted), lens_.camera());
+  MotionSolution s = locate_camera(predicted, time, followed);
   if (s.inliers == 0) return std::nullopt;
-  realign(map_, followed, pyramid, s.T_C_V, options_.camera);
-  s = locate_camera(s.T_C_V, followed);
+  realign(map_, followed, pyramid, s.T_C_V, lens_.camera());
+  s = locate_camera(s.T_C_V, time, followed);
   if (s.inliers == 0) return std::nullopt;
 
-  motion_ = relative(s.T_C_V, T_C_V_);
-  motion_s_ = (time - pose_time_).seconds();
-  T_C_V_ = s.T_C_V;
-  pose_time_ = time;
+  update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);
   std::erase_if(tracks_, [](const Track& t) { return t.strikes >= kMaxStrikes; });
-  locate_landmarks(map_, tracks_, T_C_V_, options_.mapping);
+  locate_landmarks(map_, tracks_, T_C_V_, twist_, lens_, median_depth_, options_.mapping);
   update_median_depth();
   if (wants_keyframe()) add_keyframe(time, pyramid);
   previous_ = pyramid;
   const double share = static_cast<double>(s.inliers) / static_cast<double>(s.error_px.size());
   return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance};
+}
+
+void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
+  motion_ = relative(T_C_V, T_C_V_);
+  motion_s_ = (time - pose_time_).seconds();
+  const Twist twist = twist_between(T_C_V_, T_C_V, motion_s_);
+  Keyframe& keyframe = map_.keyframes.back();
+  if (keyframe.time == pose_time_) {  // now it is known how it went on
+    keyframe.twist.omega_rad_s = 0.5 * (twist_.omega_rad_s + twist.omega_rad_s);
+    keyframe.twist.v_s = 0.5 * (twist_.v_s + twist.v_s);
+  }
+  twist_ = twist;
+  T_C_V_ = T_C_V;
+  pose_time_ = time;
 }
 
 void MapTracker::update_median_depth() {
@@ -141,16 +161,19 @@ bool MapTracker::wants_keyframe() const {
 
 void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
   // At most half of the tracks: the other half must be new parts of the scene.
-  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, options_.camera, options_.max_tracks / 2);
+  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), options_.max_tracks / 2);
   tracks_.insert(tracks_.end(), again.begin(), again.end());
   std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
 
   const std::int64_t id = map_.keyframes.back().id + 1;
-  map_.keyframes.push_back({id, time, T_C_V_, pyramid});
+  map_.keyframes.push_back({id, time, T_C_V_, pyramid, twist_});
   for (const Track& t : tracks_) {
     if (t.strikes == 0) map_.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});
   }
-  adjust_window(map_, options_.mapping);
+  adjust_window(map_, lens_, options_.mapping);
+  if (lens_.is_free()) {
+    for (Track& t : tracks_) t.normalised = unproject(lens_.camera(), {t.px.x, t.px.y});
+  }
   T_C_V_ = map_.keyframes.back().T_C_V;
   fill_up(pyramid);
   forget_old(map_, tracks_, options_.mapping);
@@ -158,7 +181,7 @@ void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
 
 void MapTracker::fill_up(const Pyramid& pyramid) {
   const std::size_t old = tracks_.size();
-  refill(tracks_, pyramid[0], options_.camera, options_.max_tracks, next_landmark_);
+  refill(tracks_, pyramid[0], lens_.camera(), options_.max_tracks, next_landmark_);
   const std::int64_t id = map_.keyframes.back().id;
   for (std::size_t i = old; i < tracks_.size(); ++i) {
     map_.landmarks[tracks_[i].landmark].observations.push_back({id, tracks_[i].px, tracks_[i].normalised});

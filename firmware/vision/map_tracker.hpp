@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/camera_model.hpp"
+#include "vision/lens.hpp"
 #include "vision/map.hpp"
 #include "vision/mapping.hpp"
 #include "vision/motion_solver.hpp"
@@ -12,7 +12,6 @@
 namespace rfmvo {
 
 struct MapTrackerOptions {
-  CameraModel camera;
   int max_tracks = 200;
   MappingOptions mapping;
 };
@@ -27,7 +26,7 @@ struct TrackedPose {
 
 class MapTracker {
  public:
-  explicit MapTracker(const MapTrackerOptions& options) : options_(options) {}
+  MapTracker(const MapTrackerOptions& options, const Lens& lens) : options_(options), lens_(lens) {}
 
   // Starts from a map whose newest key frame is this image.
   void begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std::int64_t next_landmark);
@@ -37,18 +36,22 @@ class MapTracker {
 
   [[nodiscard]] std::int64_t next_landmark() const { return next_landmark_; }
   [[nodiscard]] DeviceTime pose_time() const { return pose_time_; }
+  [[nodiscard]] const Lens& lens() const { return lens_; }
 
  private:
   [[nodiscard]] const Landmark* located(const Track& track) const;
   [[nodiscard]] ViewPose predict(DeviceTime time) const;
   [[nodiscard]] std::vector<cv::Point2f> predict_tracks(const ViewPose& T_C_V) const;
-  [[nodiscard]] MotionSolution locate_camera(const ViewPose& predicted, std::vector<Track>& followed) const;
+  [[nodiscard]] MotionSolution locate_camera(const ViewPose& predicted, DeviceTime time,
+                                             std::vector<Track>& followed) const;
   [[nodiscard]] bool wants_keyframe() const;
   void add_keyframe(DeviceTime time, const Pyramid& pyramid);
   void fill_up(const Pyramid& pyramid);
   void update_median_depth();
+  void update_motion(const ViewPose& T_C_V, DeviceTime time);
 
   MapTrackerOptions options_;
+  Lens lens_;
   Map map_;
   std::vector<Track> tracks_;  // sorted by landmark; where they are in previous_
   Pyramid previous_;
@@ -57,6 +60,7 @@ class MapTracker {
   ViewPose T_C_V_;   // the newest pose
   ViewPose motion_;  // T_C2_C1 of the two newest poses
   double motion_s_ = 0.0;
+  Twist twist_;  // of the newest pose
   double median_depth_ = 1.0;
   std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made
 };

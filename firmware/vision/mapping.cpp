@@ -25,7 +25,21 @@ bool in_window(const Landmark& landmark, std::int64_t first) {
   return landmark.located && landmark.observations.size() >= 2 && landmark.observations.back().keyframe >= first;
 }
 
-Window gather(const Map& map, std::int64_t first) {
+// The sight line of an observation as it would have been at the key frame's stamp.
+Eigen::Vector2d at_stamp(const Keyframe& keyframe, const KeyframeObservation& o, const Eigen::Vector3d& p_V,
+                         const Lens& lens) {
+  return lens.at_stamp(o.normalised, o.px.y, keyframe.T_C_V * p_V, keyframe.twist);
+}
+
+BundleObservation observed(const Keyframe& keyframe, const KeyframeObservation& o, const Eigen::Vector3d& p_V,
+                           const Lens& lens) {
+  BundleObservation result;
+  result.measured = at_stamp(keyframe, o, p_V, lens);
+  if (lens.is_free()) result.d_lens = lens.d_at_stamp(o.normalised, o.px.y, keyframe.T_C_V * p_V, keyframe.twist);
+  return result;
+}
+
+Window gather(const Map& map, const Lens& lens, std::int64_t first) {
   Window w;
   std::vector<int> view_of(map.keyframes.size(), -1);
   const std::int64_t oldest = map.keyframes.front().id;
@@ -46,9 +60,12 @@ Window gather(const Map& map, std::int64_t first) {
     w.landmarks.push_back(id);
     w.bundle.points_V.push_back(landmark.p_V);
     for (const KeyframeObservation& o : landmark.observations) {
-      w.bundle.observations.push_back({view_of[static_cast<std::size_t>(o.keyframe - oldest)], point, o.normalised});
+      w.bundle.observations.push_back(observed(*map.find(o.keyframe), o, landmark.p_V, lens));
+      w.bundle.observations.back().view = view_of[static_cast<std::size_t>(o.keyframe - oldest)];
+      w.bundle.observations.back().point = point;
     }
   }
+  w.bundle.lens = {lens.is_free(), LensVector::Zero(), lens.expected_step(), lens.information()};
   return w;
 }
 
@@ -71,30 +88,42 @@ void keep_scale(const std::vector<BundleView>& before, Window& w) {
   for (Eigen::Vector3d& p : w.bundle.points_V) p = origin.centre() + scale * (p - origin.centre());
 }
 
-void write_back(Map& map, const Window& w, const MappingOptions& options) {
+void write_back(Map& map, const Window& w, const Lens& lens, const MappingOptions& options) {
   for (std::size_t v = 0; v < w.keyframes.size(); ++v) map.find(w.keyframes[v])->T_C_V = w.bundle.views[v].T_C_V;
   for (std::size_t p = 0; p < w.landmarks.size(); ++p) {
     Landmark& landmark = map.landmarks.at(w.landmarks[p]);
     landmark.p_V = w.bundle.points_V[p];
     std::erase_if(landmark.observations, [&](const KeyframeObservation& o) {
-      const Reprojection r = reproject(map.find(o.keyframe)->T_C_V * landmark.p_V, o.normalised, options.focal_px);
+      const Keyframe& keyframe = *map.find(o.keyframe);
+      const Eigen::Vector2d measured = at_stamp(keyframe, o, landmark.p_V, lens);
+      const Reprojection r = reproject(keyframe.T_C_V * landmark.p_V, measured, options.focal_px);
       return !r.in_front || r.error_px.norm() > kCullGate * options.gate_px;
     });
     if (landmark.observations.size() < 2) landmark.located = false;
   }
 }
 
+void undistort_again(Map& map, const CameraModel& camera) {
+  for (auto& [id, landmark] : map.landmarks) {
+    for (KeyframeObservation& o : landmark.observations) o.normalised = unproject(camera, {o.px.x, o.px.y});
+  }
+}
+
 }  // namespace
 
-void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T_C_V, const MappingOptions& options) {
+void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T_C_V, const Twist& twist,
+                      const Lens& lens, double depth, const MappingOptions& options) {
   std::vector<SightLine> lines;
   for (const Track& track : tracks) {
     Landmark& landmark = map.landmarks[track.landmark];
     if (landmark.located || landmark.observations.empty()) continue;
     lines.clear();
-    for (const KeyframeObservation& o : landmark.observations)
-      lines.push_back({map.find(o.keyframe)->T_C_V, o.normalised});
-    lines.push_back({T_C_V, track.normalised});
+    const Eigen::Vector3d rough_V = T_C_V.to_V(depth * track.normalised.homogeneous());
+    for (const KeyframeObservation& o : landmark.observations) {
+      const Keyframe& keyframe = *map.find(o.keyframe);
+      lines.push_back({keyframe.T_C_V, at_stamp(keyframe, o, rough_V, lens)});
+    }
+    lines.push_back({T_C_V, lens.at_stamp(track.normalised, track.px.y, T_C_V * rough_V, twist)});
     if (const auto p = triangulate(lines, options.min_parallax_rad, options.focal_px, options.gate_px)) {
       landmark.located = true;
       landmark.p_V = *p;
@@ -102,12 +131,12 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
   }
 }
 
-void adjust_window(Map& map, const MappingOptions& options) {
+void adjust_window(Map& map, Lens& lens, const MappingOptions& options) {
   if (map.keyframes.size() < 2) return;
   const std::int64_t newest = map.keyframes.back().id;
   const bool full = static_cast<int>(map.keyframes.size()) > options.window;
   const std::int64_t first = full ? newest - options.window + 1 : map.keyframes.front().id;
-  Window w = gather(map, first);
+  Window w = gather(map, lens, first);
   if (w.bundle.views.size() < 2) return;
   if (full) {
     for (std::size_t v = 0; v < kGaugeViews && v + 1 < w.bundle.views.size(); ++v) w.bundle.views[v].fixed = true;
@@ -115,9 +144,13 @@ void adjust_window(Map& map, const MappingOptions& options) {
     w.bundle.views.front().fixed = true;
   }
   const std::vector<BundleView> before = w.bundle.views;
-  adjust_bundle(w.bundle, {options.focal_px, kBundleHuber_px, kBundleIterations});
+  const BundleReport report = adjust_bundle(w.bundle, {options.focal_px, kBundleHuber_px, kBundleIterations});
   if (!full) keep_scale(before, w);
-  write_back(map, w, options);
+  if (lens.is_free()) {
+    lens.learn(w.bundle.lens.step, report.lens_information);
+    undistort_again(map, lens.camera());
+  }
+  write_back(map, w, lens, options);
 }
 
 void forget_old(Map& map, std::span<const Track> tracks, const MappingOptions& options) {

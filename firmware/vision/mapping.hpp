@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "vision/lens.hpp"
 #include "vision/map.hpp"
 
 namespace rfmvo {
@@ -15,12 +16,15 @@ struct MappingOptions {
   int archive = 40;  // key frames kept in all
 };
 
-// Locates followed landmarks that have parallax by now, with the current view as the last sight line.
-void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T_C_V, const MappingOptions& options);
+// Locates followed landmarks that have parallax by now, with the current view as the last sight line;
+// `depth` is about that of the scene from here.
+void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T_C_V, const Twist& twist,
+                      const Lens& lens, double depth, const MappingOptions& options);
 
 // Bundle adjustment of the newest key frames and all landmarks they see; older key frames that see
 // them stay fixed. Until there are older ones, the first pose and the scale of the path are kept.
-void adjust_window(Map& map, const MappingOptions& options);
+// A free lens is adjusted, too; the landmarks' sight lines then follow it.
+void adjust_window(Map& map, Lens& lens, const MappingOptions& options);
 
 // Drops key frames beyond the archive, and landmarks that neither a key frame nor a track needs.
 void forget_old(Map& map, std::span<const Track> tracks, const MappingOptions& options);

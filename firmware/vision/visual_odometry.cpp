@@ -20,12 +20,18 @@ constexpr double kHold_s = 0.25;             // without a pose, then the map is 
 constexpr double kInflation = 2.5;           // of the motion's sigma: the map's own errors are not in it
 constexpr std::size_t kMinStartTracks = 30;  // fewer after a loss: still lost, there is nothing to start with
 constexpr double kRefillShare = 0.7;         // of max_tracks, while starting
+constexpr double kCalibratedShare = 0.06;    // of k1_sigma, if the calibration states a distortion: it measured k1
 constexpr int kArchiveWindows = 4;           // key frames kept for matching back, in windows
+
+Lens initial_lens(const VisionConfig& config, const CameraModel& camera) {
+  const bool calibrated = std::any_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k != 0.0; });
+  const double k1_sigma = calibrated ? kCalibratedShare * config.k1_sigma : config.k1_sigma;
+  return {camera, {k1_sigma, config.readout_s, config.readout_sigma_s}};
+}
 
 MapTrackerOptions tracker_options(const VisionConfig& config, const CameraModel& camera) {
   const auto window = static_cast<int>(config.window_keyframes);
-  return {camera,
-          static_cast<int>(config.max_tracks),
+  return {static_cast<int>(config.max_tracks),
           {0.5 * (camera.fx_px + camera.fy_px), config.reprojection_gate_px, rad_from_deg(config.min_parallax_deg),
            window, kArchiveWindows * window}};
 }
@@ -41,7 +47,7 @@ VoStatus judge(const TrackedPose& pose) {
 
 struct VisualOdometry::Impl {
   Impl(const VisionConfig& config, const CameraModel& camera_model)
-      : camera(camera_model),
+      : lens(initial_lens(config, camera_model)),
         options(tracker_options(config, camera_model)),
         initialiser({options.mapping.focal_px, options.mapping.gate_px, options.mapping.min_parallax_rad}) {}
 
@@ -50,7 +56,7 @@ struct VisualOdometry::Impl {
   CameraPose without_pose(DeviceTime time);
   void lose();
 
-  const CameraModel camera;
+  Lens lens;  // while there is a tracker, it knows better
   const MapTrackerOptions options;
   Initialiser initialiser;
   std::optional<MapTracker> tracker;  // once there is a map
@@ -65,6 +71,7 @@ struct VisualOdometry::Impl {
 // The scale dies with the map: what starts after it is another segment.
 void VisualOdometry::Impl::lose() {
   next_landmark = tracker->next_landmark();
+  lens = tracker->lens();
   tracker.reset();
   ++segment;
   was_lost = true;
@@ -85,9 +92,9 @@ CameraPose VisualOdometry::Impl::without_pose(DeviceTime time) {
 CameraPose VisualOdometry::Impl::start(DeviceTime time, Pyramid pyramid) {
   std::vector<cv::Point2f> still;
   for (const Track& t : tracks) still.push_back(t.px);
-  if (!previous.empty()) tracks = advanced(tracks, previous, pyramid, still, camera);
+  if (!previous.empty()) tracks = advanced(tracks, previous, pyramid, still, lens.camera());
   if (static_cast<double>(tracks.size()) < kRefillShare * options.max_tracks) {
-    refill(tracks, pyramid[0], camera, options.max_tracks, next_landmark);
+    refill(tracks, pyramid[0], lens.camera(), options.max_tracks, next_landmark);
   }
   if (tracks.size() >= kMinStartTracks) was_lost = false;
   previous = pyramid;
@@ -100,7 +107,7 @@ CameraPose VisualOdometry::Impl::start(DeviceTime time, Pyramid pyramid) {
   pose.T_V_C = to_unscaled(map->keyframes.back().T_C_V);
   pose.status = VoStatus::kTracking;
   previous_covariance.setZero();
-  tracker.emplace(options);
+  tracker.emplace(options, lens);
   tracker->begin(std::move(*map), std::move(tracks), std::move(pyramid), next_landmark);
   tracks.clear();
   return pose;
@@ -125,8 +132,10 @@ VisualOdometry::VisualOdometry(const VisionConfig& config, const CameraModel& ca
     : impl_(std::make_unique<Impl>(config, camera)) {}
 VisualOdometry::~VisualOdometry() = default;
 
+const Lens& VisualOdometry::lens() const { return impl_->tracker ? impl_->tracker->lens() : impl_->lens; }
+
 CameraPose VisualOdometry::on(const Frame& frame) {
-  const CameraModel& camera = impl_->camera;
+  const CameraModel& camera = impl_->lens.camera();
   const bool usable =
       frame.grey && frame.width_px == camera.width_px && frame.height_px == camera.height_px &&
       frame.grey->size() == static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);

@@ -6,6 +6,7 @@
 #include "config/calibration.hpp"
 #include "config/config.hpp"
 #include "estimator/event.hpp"
+#include "vision/lens.hpp"
 
 namespace rfmvo {
 
@@ -19,6 +20,9 @@ class VisualOdometry {
   // Deterministic: the same frames give the same bits. A frame whose size differs from the camera
   // model's gives status kLost.
   [[nodiscard]] CameraPose on(const Frame& frame);
+
+  // What is known of the camera by now.
+  [[nodiscard]] const Lens& lens() const;
 
  private:
   struct Impl;

@@ -30,6 +30,7 @@ struct Run {
   std::vector<CameraPose> poses;
   std::vector<double> cpu_ms;  // of the odometry, per frame, without reading the image
   double total_cpu_s = 0.0;    // with reading
+  double k1 = 0.0, readout_s = 0.0;  // as estimated in the end
 };
 
 struct PathError {
@@ -76,6 +77,8 @@ Result<Run> run_odometry(const Options& options) {
     run.cpu_ms.push_back(1e3 * (cpu_seconds() - before_s));
   }
   run.total_cpu_s = cpu_seconds() - begin_s;
+  run.k1 = odometry.lens().camera().radtan[0];
+  run.readout_s = odometry.lens().readout_s();
   return run;
 }
 
@@ -157,6 +160,8 @@ nlohmann::ordered_json figures(const Run& run, const std::optional<PathError>& e
   j["cpu_ms_p99"] = quantile(run.cpu_ms, 0.99);
   j["cpu_ms_max"] = quantile(run.cpu_ms, 1.0);
   j["cpu_ms_mean_with_reading"] = 1e3 * run.total_cpu_s / n;
+  j["lens_k1"] = run.k1;
+  j["lens_readout_ms"] = 1e3 * run.readout_s;
   if (!error) return j;
   j["ate_m"] = error->rms_m;
   j["path_m"] = error->path_m;

@@ -120,6 +120,52 @@ void expect_equal_bits(const Sequence& a, const Sequence& b) {
   }
 }
 
+// A camera whose calibration states no distortion, though there is one.
+Lens lens_after(const std::vector<TexturedPlane>& scene, const Path& path, double k1, double readout_s) {
+  CameraModel told = test_camera(), real = told;
+  real.radtan[0] = k1;
+  VisualOdometry odometry(VisionConfig{}, told);
+  for (int i = 0; i < static_cast<int>(5.0 * kRate_hz); ++i) {
+    const double t = i / kRate_hz;
+    const cv::Mat image =
+        readout_s > 0.0 ? render_rolling(scene, real, path, t, readout_s) : render(scene, real, path(t));
+    (void)odometry.on(frame_of(image, t, i));
+  }
+  return odometry.lens();
+}
+
+Rigid3 shaken_pass(double t) {
+  Rigid3 T = pass(t, 0.6);
+  T.R = T.R * so3_exp({0.06 * std::sin(4.1 * t), 0.08 * std::sin(3.3 * t), 0.04 * std::sin(2.9 * t)});
+  return T;
+}
+
+TEST(VisualOdometry, LearnsTheLensThatTheCalibrationKeptQuiet) {
+  for (const double k1 : {-0.1, 0.0, 0.1}) {
+    const Lens lens = lens_after(shelf(), shaken_pass, k1, 0.0);
+    EXPECT_NEAR(lens.camera().radtan[0], k1, 0.02);  // VISION design: 0.1 bends 5.5 m of path by 15 degrees
+    EXPECT_NEAR(lens.readout_s(), 0.0, 0.002);
+  }
+}
+
+TEST(VisualOdometry, LearnsTheRollingShutter) {
+  const Lens lens = lens_after(shelf(), shaken_pass, 0.0, 0.03);
+  EXPECT_NEAR(lens.readout_s(), 0.03, 0.003);
+  EXPECT_NEAR(lens.camera().radtan[0], 0.0, 0.01);
+}
+
+// A flat wall passed sideways at constant speed: a leaning picture may be a leaning wall.
+TEST(VisualOdometry, DoesNotInventALensBeforeAFlatWall) {
+  const Lens lens = lens_after(
+      wall(),
+      [](double t) {
+        return Rigid3{Eigen::Quaterniond::Identity(), {0.6 * t, 0.0, 0.0}};
+      },
+      0.0, 0.0);
+  EXPECT_NEAR(lens.camera().radtan[0], 0.0, 0.01);
+  EXPECT_NEAR(lens.readout_s(), 0.0, 0.003);
+}
+
 class Pass : public testing::TestWithParam<std::tuple<bool, double>> {};
 
 TEST_P(Pass, IsTrackedInOneSegment) {

@@ -1,5 +1,6 @@
 #include "support/textured_scene.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
@@ -25,7 +26,9 @@ cv::Mat shifted(const cv::Mat& grey, const cv::Point2f& shift_px) {
   return out;
 }
 
-cv::Mat render(const std::vector<TexturedPlane>& planes, const CameraModel& camera, const Rigid3& T_W_C) {
+namespace {
+
+cv::Mat render_pinhole(const std::vector<TexturedPlane>& planes, const CameraModel& camera, const Rigid3& T_W_C) {
   cv::Mat image(camera.height_px, camera.width_px, CV_8UC1, cv::Scalar(90));
   const Rigid3 T_C_W = T_W_C.inverse();
   for (const TexturedPlane& plane : planes) {
@@ -43,6 +46,43 @@ cv::Mat render(const std::vector<TexturedPlane>& planes, const CameraModel& came
       for (int j = 0; j < 3; ++j) h(i, j) = H(i, j);
     }
     cv::warpPerspective(plane.picture, image, h, image.size(), cv::INTER_AREA, cv::BORDER_TRANSPARENT);
+  }
+  return image;
+}
+
+}  // namespace
+
+cv::Mat render(const std::vector<TexturedPlane>& planes, const CameraModel& camera, const Rigid3& T_W_C) {
+  if (std::all_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k == 0.0; })) {
+    return render_pinhole(planes, camera, T_W_C);
+  }
+  constexpr int kMargin_px = 40;  // what a barrel lens sees beyond the pinhole's image
+  CameraModel wide = camera;
+  wide.radtan = {};
+  wide.width_px += 2 * kMargin_px, wide.height_px += 2 * kMargin_px;
+  wide.cx_px += kMargin_px, wide.cy_px += kMargin_px;
+  cv::Mat from(camera.height_px, camera.width_px, CV_32FC2), image;
+  for (int y = 0; y < from.rows; ++y) {
+    for (int x = 0; x < from.cols; ++x) {
+      const Eigen::Vector2d px = project(wide, unproject(camera, {x, y}));
+      from.at<cv::Vec2f>(y, x) = {static_cast<float>(px.x()), static_cast<float>(px.y())};
+    }
+  }
+  cv::remap(render_pinhole(planes, wide, T_W_C), image, from, cv::noArray(), cv::INTER_CUBIC);
+  return image;
+}
+
+cv::Mat render_rolling(const std::vector<TexturedPlane>& planes, const CameraModel& camera,
+                       const std::function<Rigid3(double)>& path, double time_s, double readout_s) {
+  constexpr int kBand_px = 12;  // rows that share a pose
+  cv::Mat image(camera.height_px, camera.width_px, CV_8UC1);
+  for (int y = 0; y < camera.height_px; y += kBand_px) {
+    const cv::Rect rows(0, y, camera.width_px, std::min(kBand_px, camera.height_px - y));
+    CameraModel band = camera;
+    band.height_px = rows.height;
+    band.cy_px -= y;
+    const double share = (y + 0.5 * rows.height) / camera.height_px - 0.5;
+    render(planes, band, path(time_s + share * readout_s)).copyTo(image(rows));
   }
   return image;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -23,8 +24,12 @@ struct TexturedPlane {
   Eigen::Vector3d corner_W, width_W, height_W;
 };
 
-// Planes are drawn in order: the far ones first.
+// Planes are drawn in order: the far ones first. A camera with distortion gives distorted pictures.
 [[nodiscard]] cv::Mat render(const std::vector<TexturedPlane>& planes, const CameraModel& camera, const Rigid3& T_W_C);
+
+// A rolling shutter: every row is seen from where the camera is when it is read; `path` gives T_W_C at a time.
+[[nodiscard]] cv::Mat render_rolling(const std::vector<TexturedPlane>& planes, const CameraModel& camera,
+                                     const std::function<Rigid3(double)>& path, double time_s, double readout_s);
 
 [[nodiscard]] Frame frame_of(const cv::Mat& grey, double time_s, std::int64_t sequence);
 

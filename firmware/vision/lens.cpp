@@ -1,0 +1,76 @@
+#include "vision/lens.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "vision/reprojection.hpp"
+
+namespace rfmvo {
+namespace {
+
+// Errors of one point are alike from view to view, so they tell less than their number promises.
+constexpr double kNoise_px = 4.0;
+constexpr double kMemory = 0.98;           // of a window for the next one: a lens changes slowly
+constexpr double kWindowShare = 1.0 / 15;  // of a window's pictures that the next one lacks
+constexpr double kMaxStep_k1 = 0.02;       // per window: what the first windows say is rough
+constexpr double kMaxStep_s = 0.005;
+constexpr double kHeld = 1e12;  // information of what must not move, px^2
+
+double information_of(double sigma) { return sigma > 0.0 ? kNoise_px * kNoise_px / (sigma * sigma) : kHeld; }
+
+}  // namespace
+
+Twist twist_between(const ViewPose& earlier, const ViewPose& later, double seconds) {
+  if (!(seconds > 0.0)) return {};
+  const ViewPose step = relative(later, earlier);
+  return {so3_log(step.R_C_V) / seconds, step.t_C_V / seconds};
+}
+
+Eigen::Vector2d image_flow_s(const Eigen::Vector3d& p_C, const Twist& twist) {
+  const Eigen::Vector3d moving = twist.omega_rad_s.cross(p_C) + twist.v_s;
+  return (moving.head<2>() - p_C.hnormalized() * moving.z()) / p_C.z();
+}
+
+Eigen::Vector2d d_unproject_d_k1(const CameraModel& camera, const Eigen::Vector2d& n) {
+  return -distort_jacobian(camera, n).partialPivLu().solve(n * n.squaredNorm());
+}
+
+Lens::Lens(const CameraModel& calibrated, const LensPrior& prior)
+    : camera_(calibrated),
+      prior_(calibrated.radtan[0], prior.readout_s),
+      value_(prior_),
+      carried_(prior_),
+      free_(prior.k1_sigma > 0.0 || prior.readout_sigma_s > 0.0) {
+  prior_information_.diagonal() << information_of(prior.k1_sigma), information_of(prior.readout_sigma_s);
+}
+
+Eigen::Vector2d Lens::at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
+                               const Twist& twist) const {
+  if (readout_s() == 0.0 || p_C.z() <= kMinDepth) return normalised;
+  return normalised - row_share(camera_, y_px) * readout_s() * image_flow_s(p_C, twist);
+}
+
+LensJacobian Lens::d_at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
+                              const Twist& twist) const {
+  LensJacobian J;
+  J.col(0) = d_unproject_d_k1(camera_, normalised);
+  J.col(1).setZero();
+  if (p_C.z() > kMinDepth) J.col(1) = -row_share(camera_, y_px) * image_flow_s(p_C, twist);
+  return J;
+}
+
+LensVector Lens::expected_step() const {
+  return information().ldlt().solve(prior_information_ * prior_ + carried_information_ * carried_) - value_;
+}
+
+void Lens::learn(const LensVector& step, const LensMatrix& window_information) {
+  value_ += LensVector(std::clamp(step(0), -kMaxStep_k1, kMaxStep_k1), std::clamp(step(1), -kMaxStep_s, kMaxStep_s));
+  camera_.radtan[0] = value_(0);
+  const LensMatrix old = kMemory * carried_information_, fresh = kWindowShare * window_information;
+  carried_information_ = old + fresh;
+  if (carried_information_.determinant() > 0.0) {
+    carried_ = carried_information_.ldlt().solve(old * carried_ + fresh * value_);
+  }
+}
+
+}  // namespace rfmvo

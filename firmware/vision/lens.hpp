@@ -1,0 +1,69 @@
+// What the odometry learns about its camera while it runs: the lens's first radial coefficient and the
+// time that the sensor takes to read one picture out (0: global shutter).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/camera_model.hpp"
+#include "vision/view_pose.hpp"
+
+namespace rfmvo {
+
+using LensVector = Eigen::Vector2d;  // k1, readout (s)
+using LensMatrix = Eigen::Matrix2d;
+using LensJacobian = Eigen::Matrix2d;  // rows: normalised x and y
+
+struct LensPrior {
+  double k1_sigma = 0.0;         // 0: k1 stays as calibrated
+  double readout_s = 0.0;        // what is known of the readout time
+  double readout_sigma_s = 0.0;  // 0: the readout time stays as told
+};
+
+// How a camera moves, in its own frame: d p_C / dt = omega x p_C + v of a point that stands still.
+struct Twist {
+  Eigen::Vector3d omega_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_s = Eigen::Vector3d::Zero();  // units of V per s
+};
+[[nodiscard]] Twist twist_between(const ViewPose& earlier, const ViewPose& later, double seconds);
+
+// d (normalised point) / dt of a point at p_C, which is in front of the camera.
+[[nodiscard]] Eigen::Vector2d image_flow_s(const Eigen::Vector3d& p_C, const Twist& twist);
+
+// d unproject() / d k1 at the point that unproject() gave.
+[[nodiscard]] Eigen::Vector2d d_unproject_d_k1(const CameraModel& camera, const Eigen::Vector2d& normalised);
+
+// When a row is read: -0.5 (first) .. 0.5 (last), in readout times from the picture's stamp.
+[[nodiscard]] inline double row_share(const CameraModel& camera, double y_px) {
+  return (y_px + 0.5) / camera.height_px - 0.5;
+}
+
+// The present estimate, with what earlier windows of key frames told.
+class Lens {
+ public:
+  Lens(const CameraModel& calibrated, const LensPrior& prior);
+
+  [[nodiscard]] const CameraModel& camera() const { return camera_; }
+  [[nodiscard]] double readout_s() const { return value_(1); }
+  [[nodiscard]] bool is_free() const { return free_; }
+
+  // Where the sight line would have met the image if all rows had been read at the stamp.
+  [[nodiscard]] Eigen::Vector2d at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
+                                         const Twist& twist) const;
+  [[nodiscard]] LensJacobian d_at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
+                                        const Twist& twist) const;
+
+  // What is known besides the window at hand, as a quadratic cost in px^2 around expected_step().
+  [[nodiscard]] LensMatrix information() const { return prior_information_ + carried_information_; }
+  [[nodiscard]] LensVector expected_step() const;
+
+  // The window's answer: a step, and the information (px^2) of its images alone about it.
+  void learn(const LensVector& step, const LensMatrix& window_information);
+
+ private:
+  CameraModel camera_;
+  LensVector prior_, value_, carried_;
+  LensMatrix prior_information_ = LensMatrix::Zero(), carried_information_ = LensMatrix::Zero();
+  bool free_ = false;
+};
+
+}  // namespace rfmvo
