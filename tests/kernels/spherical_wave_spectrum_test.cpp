@@ -122,6 +122,17 @@ TEST(SphericalWaveSpectrum, StrongestCellIsThatOfTheReferenceUnlessTheyAreEqualW
   }
 }
 
+TEST(SphericalWaveSpectrum, EveryTargetFindsTheFirstOfTheStrongestCells) {
+  for_each_target([] {
+    Random random(76);
+    for (int n = 0; n < 2000; ++n) {
+      BlockPower power;  // few values: many ties
+      for (float& p : power) p = static_cast<float>(random.integer(0, n % 70));
+      ASSERT_EQ(strongest_cell(power), strongest_cell_scalar(power));
+    }
+  });
+}
+
 TEST(SphericalWaveSpectrum, NoReadsNoPower) {
   BlockPower power;
   SphericalWaveSpectrum({}).evaluate({}, power);
