@@ -71,7 +71,7 @@ void SphericalWaveSpectrum::evaluate_scalar(const CellBlock& block, BlockPower& 
   }
 }
 
-int strongest_cell(const BlockPower& power) {
+int strongest_cell_scalar(const BlockPower& power) {
   return static_cast<int>(std::max_element(power.begin(), power.end()) - power.begin());
 }
 

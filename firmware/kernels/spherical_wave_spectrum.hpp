@@ -79,7 +79,8 @@ class SphericalWaveSpectrum {
   std::vector<PairSquares> squares_;
 };
 
-// The first of the strongest cells.
+// The first of the strongest cells; no power is NaN.
 [[nodiscard]] int strongest_cell(const BlockPower& power);
+[[nodiscard]] int strongest_cell_scalar(const BlockPower& power);
 
 }  // namespace rfmvo

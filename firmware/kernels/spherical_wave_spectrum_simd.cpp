@@ -111,7 +111,23 @@ void evaluate_block(const Spectrum& spectrum, const CellBlock& block, Spectrum::
     evaluate_column(spectrum, {hn::Load(d, at.y.data() + n), hn::Load(d, at.z.data() + n)}, squares, power.data() + n);
 }
 
+// The largest power, then the first cell that has it.
+int first_of_largest(const BlockPower& power) {
+  const Floats d;
+  auto largest = hn::Load(d, power.data());
+  for (std::size_t n = hn::Lanes(d); n < power.size(); n += hn::Lanes(d))
+    largest = hn::Max(largest, hn::Load(d, power.data() + n));
+  largest = hn::MaxOfLanes(d, largest);
+  for (std::size_t n = 0; n < power.size(); n += hn::Lanes(d)) {
+    const auto at = hn::FindFirstTrue(d, hn::Eq(hn::Load(d, power.data() + n), largest));
+    if (at >= 0) return static_cast<int>(n) + static_cast<int>(at);
+  }
+  return 0;
+}
+
 #else  // one lane
+
+int first_of_largest(const BlockPower& power) { return strongest_cell_scalar(power); }
 
 void evaluate_block(const Spectrum& spectrum, const CellBlock& block, Spectrum::PairSquares*, BlockPower& power) {
   spectrum.evaluate_scalar(block, power);
@@ -126,10 +142,13 @@ HWY_AFTER_NAMESPACE();
 namespace rfmvo {
 
 HWY_EXPORT(evaluate_block);
+HWY_EXPORT(first_of_largest);
 
 void SphericalWaveSpectrum::evaluate(const CellBlock& block, BlockPower& power) {
   HWY_DYNAMIC_DISPATCH(evaluate_block)(*this, block, squares_.data(), power);
 }
+
+int strongest_cell(const BlockPower& power) { return HWY_DYNAMIC_DISPATCH(first_of_largest)(power); }
 
 }  // namespace rfmvo
 #endif

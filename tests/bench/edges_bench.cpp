@@ -45,4 +45,3 @@ BENCHMARK(pipeline_tag_read)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rfmvo
-

@@ -33,4 +33,13 @@ double spatial_power(std::span<const PlaneStep> steps, double wavelength_m, doub
   return sum / static_cast<double>(steps.size());
 }
 
+double spatial_power_along(std::span<const PlaneStep> steps, const Point& u, double rad_per_unit) {
+  double sum = 0.0;
+  for (const PlaneStep& step : steps) {
+    const double along = step.camera[0] * u[0] + step.camera[1] * u[1] + step.camera[2] * u[2];
+    sum += std::cos(step.phase_step_rad + rad_per_unit * along);
+  }
+  return sum / static_cast<double>(steps.size());
+}
+
 }  // namespace rfmvo::reference

@@ -33,4 +33,7 @@ struct PlaneStep {
 [[nodiscard]] double spatial_power(std::span<const PlaneStep> steps, double wavelength_m, double alpha_rad,
                                    double beta_rad, double gamma);
 
+// The same with a unit vector for the angles, and 4 pi / lambda * gamma in one.
+[[nodiscard]] double spatial_power_along(std::span<const PlaneStep> steps, const Point& direction, double rad_per_unit);
+
 }  // namespace rfmvo::reference
