@@ -20,6 +20,9 @@ struct AntennaCalibration {
 struct Calibration {
   CameraModel camera;
   Rigid3 T_B_C{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), Eigen::Vector3d::Zero()};  // default: looking forward
+  // 1 sigma per axis, common to all lever arms: where the camera's projection centre is in the frame that the
+  // antennas were measured in. Antennas are easily measured against each other, a lens's centre is not.
+  double camera_sigma_m = 0.0;
   std::vector<AntennaCalibration> antennas;
 };
 

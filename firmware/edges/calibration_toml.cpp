@@ -143,12 +143,13 @@ Result<CameraModel> camera_of(const toml::table& table, const std::string& where
   return c;
 }
 
-Result<Rigid3> mounting_of(const toml::table& table, const std::string& where) {
+Result<Rigid3> mounting_of(const toml::table& table, const std::string& where, double& camera_sigma_m) {
   Section s(table, "mounting", where);
   const Rigid3 standard = Calibration{}.T_B_C;
   const auto& q = standard.R;
   const auto t = s.numbers<3>("translation_m", "m", kMaxArm_m, {standard.t.x(), standard.t.y(), standard.t.z()});
   const auto r = s.unit_vector<4>("quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()});
+  camera_sigma_m = s.number("camera_sigma_m", "m", 0, kMaxArm_m, camera_sigma_m);
   s.reject_unknown();
   if (s.error()) return *s.error();
   return Rigid3{Eigen::Quaterniond(r[0], r[1], r[2], r[3]), Eigen::Vector3d(t[0], t[1], t[2])};
@@ -213,7 +214,7 @@ Result<Calibration> parse_calibration(std::string_view toml, const std::string& 
       if (!camera) return camera.error();
       calibration.camera = camera.value();
     } else if (name == "mounting" && table != nullptr) {
-      auto mounting = mounting_of(*table, where);
+      auto mounting = mounting_of(*table, where, calibration.camera_sigma_m);
       if (!mounting) return mounting.error();
       calibration.T_B_C = mounting.value();
     } else {
@@ -243,6 +244,7 @@ std::string to_toml(const Calibration& calibration) {
   out += "\n# T_B_C: the camera on the cart (x forward, y left, z up)\n[mounting]\n";
   out += "translation_m = " + list_of(calibration.T_B_C.t) + "\n";
   out += "quaternion_wxyz = " + list_of({q.w(), q.x(), q.y(), q.z()}) + "\n";
+  out += "camera_sigma_m = " + text_of(calibration.camera_sigma_m) + "\n";
   for (const AntennaCalibration& a : calibration.antennas) {
     out += "\n[[antenna]]\nport = " + std::to_string(a.port) + "\n";
     out += "p_C_A_m = " + list_of(a.p_C_A_m) + "\n";

@@ -22,9 +22,8 @@ JointSegment::JointSegment(const Config& config, const Calibration& calibration,
       id_(id),
       T_W_C0_(T_W_C0),
       path_(T_W_C0.R),
-      correlation_length_m_(config.joint.correlation_length_m),
-      scale_walk_per_sqrt_m_(config.joint.vo_scale_walk_per_sqrt_m),
-      rotation_walk_rad_per_sqrt_m_(rad_from_deg(config.joint.vo_rotation_walk_deg_per_sqrt_m)) {
+      correlation_length_m_(config.joint.correlation_length_m) {
+  set_drift(1.0);
   for (const AntennaCalibration& antenna : calibration.antennas) {
     shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
@@ -90,7 +89,8 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   priors.electrical_length_sigma_m = 40.0;
   priors.scale_walk_per_sqrt_m = scale_walk_per_sqrt_m_;
   priors.rotation_walk_rad_per_sqrt_m = rotation_walk_rad_per_sqrt_m_;
-  priors.position_walk_m_per_sqrt_m = config_.joint.vo_position_walk_m_per_sqrt_m;
+  priors.position_walk_m_per_sqrt_m = position_walk_m_per_sqrt_m_;
+  priors.lever_arms_common_sigma_m = calibration_.camera_sigma_m;
   for (const AntennaCalibration& antenna : calibration_.antennas) {
     priors.lever_arm_C.push_back(antenna.p_C_A_m);
     priors.lever_arm_sigma_m.push_back(std::max(antenna.lever_arm_sigma_m, 1e-4));

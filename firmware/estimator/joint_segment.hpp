@@ -80,6 +80,7 @@ class JointSegment {
   bool start();
   void iterate(bool thorough);
   void consider_rivals();
+  void set_drift(double factor);
   void estimate_drift();
   [[nodiscard]] double total_evidence() const;
   enum class Effort { kNew, kRefresh, kAll };  // search new and open tags; refine all modes; search all
@@ -107,7 +108,8 @@ class JointSegment {
   double next_start_arc_V_ = 0.0;
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
   double correlation_length_m_;
-  double scale_walk_per_sqrt_m_, rotation_walk_rad_per_sqrt_m_;  // of the odometry, as its corrections show
+  double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show
+  double scale_walk_per_sqrt_m_ = 0.0, rotation_walk_rad_per_sqrt_m_ = 0.0, position_walk_m_per_sqrt_m_ = 0.0;
   double knot_spacing_V_ = 1.0;
   JointState shared_;             // tags stand in tags_
   JointCovariance covariance_;

@@ -1,47 +1,47 @@
 // JointSegment: how strongly the odometry drifts.
-#include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "base/units.hpp"
 #include "estimator/joint_segment.hpp"
 
 namespace rfmvo {
+namespace {
 
-// Random-walk strengths of the odometry from the corrections themselves: one step of expectation
-// maximisation, with the configured strength as a prior worth kPriorIntervals of path.
-void JointSegment::estimate_drift() {
-  const SharedLayout& layout = covariance_.layout;
-  const JointProblem problem = problem_for({}, std::exp(shared_.log_scale));
-  if (covariance_.shared.rows() != layout.size() || layout.knots != static_cast<int>(shared_.knots.size())) return;
-  constexpr double kPriorIntervals = 8.0;
-  const double nominal_scale = config_.joint.vo_scale_walk_per_sqrt_m;
-  const double nominal_turn = rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
-  double scale_sum = kPriorIntervals * nominal_scale * nominal_scale, scale_count = kPriorIntervals;
-  double turn_sum = 3.0 * kPriorIntervals * nominal_turn * nominal_turn, turn_count = 3.0 * kPriorIntervals;
-  const Eigen::MatrixXd& P = covariance_.shared;
-  const auto second_moment = [&](int k, int offset, double change) {
-    const int b = layout.knot(k + 1) + offset;
-    double variance = P(b, b);
-    if (k > 0) {
-      const int a = layout.knot(k) + offset;
-      variance += P(a, a) - 2.0 * P(a, b);
-    }
-    return change * change + std::max(variance, 0.0);
-  };
-  for (int k = 0; k + 1 < layout.knots; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double length_m = problem.reference_scale_m * problem.intervals[i].length_V;
-    const KnotState& a = shared_.knots[i];
-    const KnotState& b = shared_.knots[i + 1];
-    scale_sum += second_moment(k, 6, b.log_scale_drift - a.log_scale_drift) / length_m;
-    scale_count += 1.0;
-    for (int j = 0; j < 3; ++j)
-      turn_sum += second_moment(k, 3 + j, b.rotation_correction_W[j] - a.rotation_correction_W[j]) / length_m;
-    turn_count += 3.0;
-  }
-  scale_walk_per_sqrt_m_ = std::sqrt(scale_sum / scale_count);
-  rotation_walk_rad_per_sqrt_m_ = std::sqrt(turn_sum / turn_count);
+// Odometry is better or worse than configured by one factor: from one class of the drift model to the next
+// its scale wanders three times as much, its heading twice.
+constexpr std::array<double, 5> kFactors{1.0, 2.0, 4.0, 8.0, 16.0};
+constexpr double kTurnExponent = 0.63;  // 3^0.63 = 2
+
+}  // namespace
+
+void JointSegment::set_drift(double factor) {
+  drift_factor_ = factor;
+  scale_walk_per_sqrt_m_ = factor * config_.joint.vo_scale_walk_per_sqrt_m;
+  rotation_walk_rad_per_sqrt_m_ = std::pow(factor, kTurnExponent) * rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
+  position_walk_m_per_sqrt_m_ = factor * config_.joint.vo_position_walk_m_per_sqrt_m;
 }
 
+// The factor that the reads of the joined tags favour, up to one step from where it stands.
+void JointSegment::estimate_drift() {
+  const std::vector<Epc> epcs = joined_tags();
+  if (epcs.empty()) return;
+  const JointSegment before = *this;
+  double best = 0.0;
+  std::optional<JointSegment> chosen;
+  for (const double factor : kFactors) {
+    if (factor > 2.1 * before.drift_factor_ || factor < before.drift_factor_ / 2.1) continue;
+    JointSegment trial = before;
+    trial.set_drift(factor);
+    if (factor != before.drift_factor_) trial.refine(1);
+    const double likelihood =
+        log_marginal_likelihood(trial.problem_for(epcs, std::exp(trial.shared_.log_scale)), trial.state_for(epcs));
+    if (getenv("DBG")) printf("   drift %.0f ml %.1f scale %.4f\n", factor, likelihood, std::exp(trial.shared_.log_scale));
+    if (!chosen || likelihood > best) {
+      best = likelihood;
+      chosen = trial;
+    }
+  }
+  *this = *chosen;
+}
 
 }  // namespace rfmvo

@@ -130,11 +130,10 @@ void JointSegment::iterate(bool thorough) {
   for (int round = 0; round < rounds; ++round) {
     if (round > 0) place(Effort::kRefresh);
     select();
-    const std::vector<Epc> before = joined_tags();
     refine(thorough ? 2 : 1);
+    if (thorough && round > 0) estimate_drift();
     compute_covariance();
-    estimate_drift();
-    if (getenv("DBG")) { printf("  round %d joined %zu evid %.1f scale %.4f\n", round, before.size(), total_evidence(), std::exp(shared_.log_scale)); }
+    if (getenv("DBG")) { printf("  round %d joined %zu evid %.1f scale %.4f drift %.0f\n", round, joined_tags().size(), total_evidence(), std::exp(shared_.log_scale), drift_factor_); }
   }
 }
 

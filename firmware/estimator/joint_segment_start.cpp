@@ -103,11 +103,13 @@ void JointSegment::consider_rivals() {
     rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
     const auto material = [&] { return std::abs(rival.shared_.log_scale - shared_.log_scale) > kMaterialScale; };
     double e = rival.total_evidence();
+    // The same valley again tells nothing; one that is as deep may be deeper at a second look.
+    constexpr double kSameValley = 0.01, kAsDeep = 30.0;
+    const bool same = std::abs(rival.shared_.log_scale - shared_.log_scale) < kSameValley;
     if (getenv("DBG")) printf("   rival start %.4f ev %.1f -> %.4f ev %.1f (best %.1f)\n", std::exp(c.state.log_scale), c.evidence, rival.scale_m_per_unit(), e, best);
-    if (e > best - 30) {
+    if (same ? e > best : e > best - kAsDeep) {
       rival.iterate(true);
       e = rival.total_evidence();
-    if (getenv("DBG")) printf("   rival thorough %.4f ev %.1f (best %.1f)\n", rival.scale_m_per_unit(), e, best);
     }
     if (e > best) {
       if (material()) second = std::max(second, best);

@@ -283,4 +283,19 @@ TagCoupling tag_coupling(const JointProblem& problem, const JointState& state) {
   return c;
 }
 
+double log_marginal_likelihood(const JointProblem& problem, const JointState& state) {
+  const NormalEquations eq = build(problem, chains_of(problem, state), state, false);
+  Eigen::MatrixXd S = eq.H;
+  double log_determinant = 0.0;
+  for (const TagBlock& tag : eq.tags) {
+    const Eigen::LLT<Eigen::Matrix4d> llt(tag.H);
+    const Eigen::MatrixXd L_inverse_H = llt.matrixL().solve(tag.H_shared);
+    S.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse_H.transpose(), -1.0);
+    log_determinant += std::log(tag.H.determinant());
+  }
+  const Eigen::MatrixXd whole = S.selfadjointView<Eigen::Lower>();
+  log_determinant += whole.ldlt().vectorD().array().abs().log().sum();
+  return -eq.cost - 0.5 * log_determinant - log_drift_sigmas(problem);
+}
+
 }  // namespace rfmvo

@@ -8,6 +8,7 @@
 #include "base/units.hpp"
 #include "estimator/joint_solver.hpp"
 #include "estimator/port_offset_scan.hpp"
+#include "rf/phase.hpp"
 
 namespace rfmvo {
 namespace {
@@ -148,6 +149,14 @@ std::vector<Agreement> agreements_about(const JointProblem& problem, JointState 
   return found;
 }
 
+bool same_start(const JointState& a, const JointState& b) {
+  constexpr double kScale = 0.008, kOffset_rad = 0.7;
+  bool same = std::abs(a.log_scale - b.log_scale) < kScale;
+  for (std::size_t p = 0; p < a.ports.size(); ++p)
+    same = same && std::abs(wrap_rad(a.ports[p].offset_rad - b.ports[p].offset_rad)) < kOffset_rad;
+  return same;
+}
+
 // The best agreements of one scale, each with its tags, path bent a little.
 std::vector<Rough> rough_starts(JointProblem problem, const JointState& blank, double log_scale, const BeamModel& beams,
                                 const StartOptions& o) {
@@ -202,9 +211,14 @@ std::vector<StartCandidate> find_starts(const JointProblem& problem, const Joint
   for (const ScalePower& s : best_scales(part, blank, all, beams, options))
     for (Rough& r : rough_starts(part, blank, s.log_scale, beams, options)) rough.push_back(std::move(r));
   std::stable_sort(rough.begin(), rough.end(), [](const Rough& a, const Rough& b) { return a.cost < b.cost; });
-  if (rough.size() > options.candidates) rough.resize(options.candidates);
-  std::vector<StartCandidate> found;
+  // Neighbouring steps of the grid lead to the same place.
+  std::vector<Rough> distinct;
   for (Rough& r : rough) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Rough& d) { return same_start(d.state, r.state); });
+    if (!known && distinct.size() < options.candidates) distinct.push_back(std::move(r));
+  }
+  std::vector<StartCandidate> found;
+  for (Rough& r : distinct) {
     const StartCandidate c = refine(part, r, beams);
     JointState whole = state;
     whole.log_scale = c.state.log_scale;

@@ -98,7 +98,42 @@ double add_interval(const JointProblem& problem, const JointState& state, const 
   return cost;
 }
 
+// Lever arms of independent errors D^-1 = diag(sigma^2) and one error common to all, per axis:
+// (D^-1 + c^2 1 1^T)^-1 = D - D 1 1^T D c^2 / (1 + c^2 1^T D 1).
+double add_lever_arm_prior(const JointPriors& priors, const JointState& state, const SharedLayout& layout,
+                           Eigen::MatrixXd* H, Eigen::VectorXd* g) {
+  Eigen::VectorXd D(layout.ports);
+  for (int p = 0; p < layout.ports; ++p) D[p] = std::pow(priors.lever_arm_sigma_m[static_cast<std::size_t>(p)], -2.0);
+  const double common = std::pow(priors.lever_arms_common_sigma_m, 2.0);
+  const Eigen::MatrixXd information =
+      Eigen::MatrixXd(D.asDiagonal()) - common / (1.0 + common * D.sum()) * D * D.transpose();
+  double cost = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    Eigen::VectorXd residual(layout.ports);
+    for (int p = 0; p < layout.ports; ++p) {
+      const auto index = static_cast<std::size_t>(p);
+      residual[p] = state.ports[index].lever_arm_C[i] - priors.lever_arm_C[index][i];
+    }
+    const Eigen::VectorXd pull = information * residual;
+    cost += 0.5 * residual.dot(pull);
+    for (int a = 0; H != nullptr && a < layout.ports; ++a) {
+      (*g)[layout.port(a) + 2 + i] -= pull[a];
+      for (int b = 0; b <= a; ++b) (*H)(layout.port(a) + 2 + i, layout.port(b) + 2 + i) += information(a, b);
+    }
+  }
+  return cost;
+}
+
 }  // namespace
+
+double log_drift_sigmas(const JointProblem& problem) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < problem.intervals.size(); ++k) {
+    const IntervalSigma sigma = interval_sigma(problem, k);
+    sum += std::log(sigma.drift) + 3.0 * std::log(sigma.turn) + 3.0 * std::log(sigma.position_m);
+  }
+  return sum;
+}
 
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g) {
@@ -123,14 +158,8 @@ double add_path_prior(const JointProblem& problem, const JointState& state, cons
     Factor length;
     length.add(layout.port(p) + 1, 1.0);
     cost += length.close(port.electrical_length_m - priors.electrical_length_m, priors.electrical_length_sigma_m, H, g);
-    const auto index = static_cast<std::size_t>(p);
-    for (int i = 0; i < 3; ++i) {
-      Factor arm;
-      arm.add(layout.port(p) + 2 + i, 1.0);
-      cost += arm.close(port.lever_arm_C[i] - priors.lever_arm_C[index][i], priors.lever_arm_sigma_m[index], H, g);
-    }
   }
-  return cost;
+  return cost + add_lever_arm_prior(priors, state, layout, H, g);
 }
 
 }  // namespace rfmvo

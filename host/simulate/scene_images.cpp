@@ -14,6 +14,10 @@ constexpr double kReadableShare = 0.4;                          // of the time, 
 constexpr int kAttempts = 300;
 constexpr double kProbe_s = 0.1;
 
+// The truth of an RGB-D sequence belongs to its depth camera, or to a rig: the colour camera, whose motion
+// the odometry sees, is some centimetres away.
+constexpr double kFrameOffset_m = 0.03;
+
 Calibration calibration_of(const CameraModel& camera) {
   Calibration c;
   c.camera = camera;
@@ -70,6 +74,7 @@ Result<Scene> make_image_scene(const Options& options) {
   Scene scene;
   scene.name = "images";
   scene.calibration = calibration_of(folder->camera);
+  scene.frame_offset_sigma_m = kFrameOffset_m;
   for (const ImageEntry& entry : folder->images) scene.frame_times_s.push_back(entry.t_s);
   scene.T_S_C = [folder](double t_s) { return pose_at(folder->truth, t_s); };
   scene.frame = [folder](std::size_t k) -> Result<Frame> {

@@ -17,8 +17,10 @@ constexpr double kMaxGapShare = 0.5;  // of the run, so that a path is left on b
 // Journals count microseconds.
 DeviceTime at(double t_s) { return kEpoch + Duration{std::llround(t_s * 1e6) * 1000}; }
 
-// The lever arms as a ruler finds them: off by what the calibration itself claims, 1 sigma.
-Calibration nominal_of(Calibration calibration, std::uint64_t seed) {
+// The lever arms as a ruler finds them: off by what the calibration itself claims, 1 sigma. What the images'
+// own camera is off by comes on top, and is in the images already.
+Calibration nominal_of(Calibration calibration, double frame_offset_sigma_m, std::uint64_t seed) {
+  calibration.camera_sigma_m = frame_offset_sigma_m;
   Random random(seed, "lever arm errors");
   for (AntennaCalibration& antenna : calibration.antennas) {
     for (int i = 0; i < 3; ++i) antenna.p_C_A_m[i] += antenna.lever_arm_sigma_m * random.normal();
@@ -129,7 +131,7 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   Start start;
   start.time = at(scene.start_s());
   start.config.estimator.pose_source = with_frames ? "frames" : "poses";
-  start.calibration = nominal_of(scene.calibration, options.seed);
+  start.calibration = nominal_of(scene.calibration, scene.frame_offset_sigma_m, options.seed);
   if (Status s = sink(start); !s.ok()) return s.error();
   if (Status s = feed(scene, with_frames, gap, small_events(scene, options, drifted.poses), sink); !s.ok())
     return s.error();
