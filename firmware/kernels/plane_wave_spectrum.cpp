@@ -35,7 +35,7 @@ PlaneWaveSpectrum::PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const
         pair.first[half][axis] = kFirst_q24 * first;
         pair.step[half][axis] = kStep_q27 * (scales.step * s.camera_turns[axis]);
       }
-      pair.phase_q16[half] = s.phase_step_q16;
+      pair.phase_q32[half] = static_cast<std::int32_t>(std::uint32_t{s.phase_step_q16} << 16);
     }
     pairs_.push_back(pair);
     for (std::size_t half = 0; half < 2; ++half) {
@@ -54,7 +54,8 @@ void PlaneWaveSpectrum::evaluate_scalar(const Directions& directions, int begin,
     for (int i = 0; i < steps_; ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i / 2)];
       const auto half = static_cast<std::size_t>(i % 2);
-      const std::uint32_t first = (std::uint32_t{pair.phase_q16[half]} << 16) + angle_q32(pair.first[half], x, y, z, 8);
+      const std::uint32_t first =
+          static_cast<std::uint32_t>(pair.phase_q32[half]) + angle_q32(pair.first[half], x, y, z, 8);
       const std::uint32_t step = angle_q32(pair.step[half], x, y, z, 5);
       for (int n = begin; n < end; ++n) {
         const std::uint32_t angle = first + static_cast<std::uint32_t>(n) * step;

@@ -56,7 +56,7 @@ class PlaneWaveSpectrum {
   struct Pair {
     std::array<std::array<float, 3>, 2> first;  // 2^24 (lever + gamma_0 camera)
     std::array<std::array<float, 3>, 2> step;   // 2^27 Delta gamma camera
-    std::array<std::uint16_t, 2> phase_q16;
+    std::array<std::int32_t, 2> phase_q32;      // 2^32 = one turn
   };
 
   PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const ScaleSteps& scales);
