@@ -30,9 +30,8 @@ SpectrumPeak strongest(SphericalWaveSpectrum& spectrum, const Eigen::Vector3f& c
   BlockPower power;
   spectrum.evaluate({{first.x(), first.y(), first.z()}, {cell.x(), cell.y(), cell.z()}}, power);
   const int best = strongest_cell(power);
-  const Eigen::Vector3f index(static_cast<float>(best / (kBlockSide * kBlockSide)),
-                              static_cast<float>(best / kBlockSide % kBlockSide),
-                              static_cast<float>(best % kBlockSide));
+  const auto [i, j, k] = cell_index(best);
+  const Eigen::Vector3f index(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
   return {(first + cell.cwiseProduct(index)).cast<double>(), power[static_cast<std::size_t>(best)], 0.0};
 }
 

@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kFirst_q24 = 16777216.0F;  // 2^24
 constexpr float kStep_q27 = 134217728.0F;  // 2^27
+// What an int32 holds of either.
+constexpr double kMaxFirst_turns = 127.0, kMaxStep_turns = 15.0;
 
 std::uint32_t angle_q32(const std::array<float, 3>& slope, float x, float y, float z, int shift) {
   const float along = (slope[0] * x + slope[1] * y) + slope[2] * z;
@@ -43,6 +45,7 @@ PlaneWaveSpectrum::PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const
       step_turns_ = std::max(step_turns_, length(pair.step[half]) / double{kStep_q27});
     }
   }
+  RFMVO_ASSERT(first_turns_ < kMaxFirst_turns && step_turns_ < kMaxStep_turns);
 }
 
 void PlaneWaveSpectrum::evaluate_scalar(const Directions& directions, int begin, int end,
