@@ -41,15 +41,19 @@ bool in_beam(const Eigen::Vector3f& centre, const Eigen::Vector3f& cell, std::sp
   const std::size_t stride = std::max<std::size_t>(1, reads.size() / 16);
   const float slack = 0.5F * kBlockSide * cell.norm();  // half the block's diagonal
   const float cosine = std::cos(static_cast<float>(o.beam_half_angle_rad));
-  int seen = 0, asked = 0;
-  for (std::size_t i = 0; i < reads.size(); i += stride, ++asked) {
+  const std::size_t asked = (reads.size() + stride - 1) / stride;
+  const double needed = o.beam_min_share * static_cast<double>(asked);
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < reads.size(); i += stride) {
     const Eigen::Vector3f ray = centre - reads[i].p_W_A;
     const float range = ray.norm();
-    if (range < static_cast<float>(o.range_min_m) - slack || range > static_cast<float>(o.range_max_m) + slack)
+    if (range >= static_cast<float>(o.range_min_m) - slack && range <= static_cast<float>(o.range_max_m) + slack &&
+        ray.dot(reads[i].boresight_W) + slack >= cosine * range)
       continue;
-    if (ray.dot(reads[i].boresight_W) + slack >= cosine * range) ++seen;
+    ++missed;
+    if (static_cast<double>(asked - missed) < needed) return false;
   }
-  return seen >= o.beam_min_share * asked;
+  return true;
 }
 
 std::vector<SpectrumPeak> separated(std::vector<SpectrumPeak> peaks, const SpectrumOptions& options) {
