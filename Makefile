@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files test test-asan test-clang bench format format-check tidy packages clean
+.PHONY: build demo demo-files test test-asan test-clang test-arm64 bench format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -60,6 +60,13 @@ test-clang:
 	@$(MAKE) --no-print-directory compile-clang
 	@ctest --test-dir build/clang --output-on-failure -j 2
 
+# The kernels and their tests, cross-compiled, under qemu-user; and their instructions per cell.
+test-arm64:
+	@cmake/install-packages.sh g++-aarch64-linux-gnu googletest qemu-user
+	@cmake -S tests/arm64 -B build/arm64 -G Ninja --toolchain $(CURDIR)/cmake/aarch64.cmake $(CCACHE) >/dev/null
+	@cmake --build build/arm64 -j $(JOBS)
+	@ctest --test-dir build/arm64 --output-on-failure
+
 bench: build
 	build/release/tests/rfmvo_benchmarks
 
@@ -79,4 +86,4 @@ tidy: build
 
 # The Python environment and downloaded packages stay.
 clean:
-	rm -rf build/release build/asan build/clang demo
+	rm -rf build/release build/asan build/clang build/arm64 demo

@@ -30,9 +30,8 @@ SpectrumPeak strongest(SphericalWaveSpectrum& spectrum, const Eigen::Vector3f& c
   BlockPower power;
   spectrum.evaluate({{first.x(), first.y(), first.z()}, {cell.x(), cell.y(), cell.z()}}, power);
   const int best = strongest_cell(power);
-  const Eigen::Vector3f index(static_cast<float>(best / (kBlockSide * kBlockSide)),
-                              static_cast<float>(best / kBlockSide % kBlockSide),
-                              static_cast<float>(best % kBlockSide));
+  const auto [i, j, k] = cell_index(best);
+  const Eigen::Vector3f index(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
   return {(first + cell.cwiseProduct(index)).cast<double>(), power[static_cast<std::size_t>(best)], 0.0};
 }
 
@@ -42,15 +41,19 @@ bool in_beam(const Eigen::Vector3f& centre, const Eigen::Vector3f& cell, std::sp
   const std::size_t stride = std::max<std::size_t>(1, reads.size() / 16);
   const float slack = 0.5F * kBlockSide * cell.norm();  // half the block's diagonal
   const float cosine = std::cos(static_cast<float>(o.beam_half_angle_rad));
-  int seen = 0, asked = 0;
-  for (std::size_t i = 0; i < reads.size(); i += stride, ++asked) {
+  const std::size_t asked = (reads.size() + stride - 1) / stride;
+  const double needed = o.beam_min_share * static_cast<double>(asked);
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < reads.size(); i += stride) {
     const Eigen::Vector3f ray = centre - reads[i].p_W_A;
     const float range = ray.norm();
-    if (range < static_cast<float>(o.range_min_m) - slack || range > static_cast<float>(o.range_max_m) + slack)
+    if (range >= static_cast<float>(o.range_min_m) - slack && range <= static_cast<float>(o.range_max_m) + slack &&
+        ray.dot(reads[i].boresight_W) + slack >= cosine * range)
       continue;
-    if (ray.dot(reads[i].boresight_W) + slack >= cosine * range) ++seen;
+    ++missed;
+    if (static_cast<double>(asked - missed) < needed) return false;
   }
-  return seen >= o.beam_min_share * asked;
+  return true;
 }
 
 std::vector<SpectrumPeak> separated(std::vector<SpectrumPeak> peaks, const SpectrumOptions& options) {

@@ -60,9 +60,13 @@ HWY_INLINE hn::Vec<Int16s> high_halves(V low, V high) {
 HWY_INLINE hn::Vec<Int32s> add_halves(hn::Vec<Int32s> sum, hn::Vec<Int16s> halves) {
 #if HWY_TARGET == HWY_NEON
   return hn::Vec<Int32s>(vpadalq_s16(sum.raw, halves.raw));
-#else  // x86: pmaddwd keeps the pairs of its lanes
+#elif HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128  // pmaddwd; elsewhere the order of its lanes is another
   hn::Vec<Int32s> unused = hn::Zero(Int32s());
   return hn::ReorderWidenMulAccumulate(Int32s(), halves, hn::Set(Int16s(), 1), sum, unused);
+#else
+  const auto both = hn::BitCast(Int32s(), halves);
+  const auto low = hn::ShiftRight<16>(hn::ShiftLeft<16>(both));
+  return hn::Add(sum, hn::Add(low, hn::ShiftRight<16>(both)));
 #endif
 }
 

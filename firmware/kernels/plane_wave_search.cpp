@@ -85,11 +85,12 @@ void BoundedSpectrum::bound_block(const PlaneWaveSteps& steps, const PlaneWaveCu
     Highest& highest = highest_[static_cast<std::size_t>(n)];
     for (int a = alpha; a < a_end; ++a)
       for (int b = beta; b < b_end; ++b) {
-        const auto d = static_cast<std::size_t>(a * count + b);
+        const int cell = a * count + b;
+        const auto d = static_cast<std::size_t>(cell);
         const double here = bound.at(gamma * double{u.x[d]}, gamma * double{u.y[d]}, gamma * double{u.z[d]}) + error;
         // float: half an ulp of numbers up to a few units.
         bounds_[static_cast<std::size_t>(n) * grid_.size() + d] = static_cast<float>(here * (1.0 + 1e-6) + 1e-6);
-        if (here > highest.bound) highest = {here, static_cast<int>(d)};
+        if (here > highest.bound) highest = {here, cell};
       }
   }
 }

@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kFirst_q24 = 16777216.0F;  // 2^24
 constexpr float kStep_q27 = 134217728.0F;  // 2^27
+// What an int32 holds of either.
+constexpr double kMaxFirst_turns = 127.0, kMaxStep_turns = 15.0;
 
 std::uint32_t angle_q32(const std::array<float, 3>& slope, float x, float y, float z, int shift) {
   const float along = (slope[0] * x + slope[1] * y) + slope[2] * z;
@@ -35,7 +37,7 @@ PlaneWaveSpectrum::PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const
         pair.first[half][axis] = kFirst_q24 * first;
         pair.step[half][axis] = kStep_q27 * (scales.step * s.camera_turns[axis]);
       }
-      pair.phase_q16[half] = s.phase_step_q16;
+      pair.phase_q32[half] = static_cast<std::int32_t>(std::uint32_t{s.phase_step_q16} << 16);
     }
     pairs_.push_back(pair);
     for (std::size_t half = 0; half < 2; ++half) {
@@ -43,6 +45,7 @@ PlaneWaveSpectrum::PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const
       step_turns_ = std::max(step_turns_, length(pair.step[half]) / double{kStep_q27});
     }
   }
+  RFMVO_ASSERT(first_turns_ < kMaxFirst_turns && step_turns_ < kMaxStep_turns);
 }
 
 void PlaneWaveSpectrum::evaluate_scalar(const Directions& directions, int begin, int end,
@@ -54,7 +57,8 @@ void PlaneWaveSpectrum::evaluate_scalar(const Directions& directions, int begin,
     for (int i = 0; i < steps_; ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i / 2)];
       const auto half = static_cast<std::size_t>(i % 2);
-      const std::uint32_t first = (std::uint32_t{pair.phase_q16[half]} << 16) + angle_q32(pair.first[half], x, y, z, 8);
+      const std::uint32_t first =
+          static_cast<std::uint32_t>(pair.phase_q32[half]) + angle_q32(pair.first[half], x, y, z, 8);
       const std::uint32_t step = angle_q32(pair.step[half], x, y, z, 5);
       for (int n = begin; n < end; ++n) {
         const std::uint32_t angle = first + static_cast<std::uint32_t>(n) * step;

@@ -7,8 +7,8 @@
 //             are the binary angle. `first` is a float scalar product in 2^-24 turns, `step` in 2^-27 turns, each
 //             ((x + y) + z) without contraction and rounded to the nearest integer (half to even): the same bits on
 //             every target.
-// Range:      |(lever + gamma camera)' u| of the first scale below 127 turns, a scale's step below 15 turns;
-//             1..kMaxTerms_q15 steps.
+// Range:      asserted: the sizes of the components of lever + first camera sum to less than 127 turns, those of
+//             step camera to less than 15; 1..kMaxTerms_q15 steps.
 // Saturation: none after the cosine: an int32 holds kMaxTerms_q15 of them.
 #pragma once
 
@@ -25,7 +25,7 @@ namespace rfmvo {
 struct PlaneWaveStep {
   std::uint16_t phase_step_q16 = 0;     // Delta phi
   std::array<float, 3> lever_turns{};   // 2 / lambda * step of the lever arm; zero in Eq. (1)
-  std::array<float, 3> camera_turns{};  // 2 / lambda * Delta X_C: turns per unit of gamma
+  std::array<float, 3> camera_turns{};  // 2 / lambda * Delta X_C, per unit of gamma
 };
 
 struct ScaleSteps {
@@ -56,7 +56,7 @@ class PlaneWaveSpectrum {
   struct Pair {
     std::array<std::array<float, 3>, 2> first;  // 2^24 (lever + gamma_0 camera)
     std::array<std::array<float, 3>, 2> step;   // 2^27 Delta gamma camera
-    std::array<std::uint16_t, 2> phase_q16;
+    std::array<std::int32_t, 2> phase_q32;      // 2^32 = one turn
   };
 
   PlaneWaveSpectrum(std::span<const PlaneWaveStep> steps, const ScaleSteps& scales);

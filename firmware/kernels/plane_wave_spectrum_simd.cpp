@@ -42,10 +42,10 @@ struct Scales {
   int begin, end;
 };
 
-HWY_INLINE PairAngles angles_of(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, const Scales& scales) {
+HWY_INLINE PairAngles angles_of(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, Scales scales) {
   PairAngles a;
   for (std::size_t half = 0; half < 2; ++half) {
-    const auto phase = hn::ShiftLeft<16>(hn::Set(Int32s(), pair.phase_q16[half]));
+    const auto phase = hn::Set(Int32s(), pair.phase_q32[half]);
     a.step[half] = angle_q32<5>(u, pair.step[half]);
     const auto first =
         hn::Add(angle_q32<8>(u, pair.first[half]), hn::Mul(a.step[half], hn::Set(Int32s(), scales.begin)));
@@ -63,8 +63,7 @@ HWY_INLINE hn::Vec<Int16s> next_cosines(PairAngles& a) {
 }
 
 // Two pairs at a time halve the traffic of the sums.
-HWY_INLINE void add_two_pairs(const PlaneWaveSpectrum::Pair* pairs, const Lanes& u, const Scales& scales,
-                              std::int32_t* sums) {
+HWY_INLINE void add_two_pairs(const PlaneWaveSpectrum::Pair* pairs, const Lanes& u, Scales scales, std::int32_t* sums) {
   const Int32s d;
   PairAngles a = angles_of(pairs[0], u, scales), b = angles_of(pairs[1], u, scales);
   for (int n = scales.begin; n < scales.end; ++n, sums += kMaxLanes)
@@ -72,8 +71,7 @@ HWY_INLINE void add_two_pairs(const PlaneWaveSpectrum::Pair* pairs, const Lanes&
 }
 
 template <bool kBoth>
-HWY_INLINE void add_pair(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, const Scales& scales,
-                         std::int32_t* sums) {
+HWY_INLINE void add_pair(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, Scales scales, std::int32_t* sums) {
   const Int32s d;
   PairAngles a = angles_of(pair, u, scales);
   for (int n = scales.begin; n < scales.end; ++n, sums += kMaxLanes) {
@@ -84,7 +82,7 @@ HWY_INLINE void add_pair(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, co
 }
 
 // All steps and scales for one vector of directions; scale n is at sums + n * kMaxLanes.
-void add_steps(const PlaneWaveSpectrum& spectrum, const Lanes& u, const Scales& scales, std::int32_t* sums) {
+void add_steps(const PlaneWaveSpectrum& spectrum, const Lanes& u, Scales scales, std::int32_t* sums) {
   const auto pairs = spectrum.pairs();
   const std::size_t both = pairs.size() - (spectrum.odd() ? 1 : 0);
   std::size_t p = 0;
@@ -102,6 +100,15 @@ HWY_INLINE hn::Vec<Floats> load_some(const float* from, std::size_t count) {
   return hn::Load(d, some.data());
 }
 
+HWY_INLINE void store_some(const std::int32_t* from, std::size_t count, std::int32_t* to) {
+  const Int32s d;
+  if (count == hn::Lanes(d)) {
+    hn::StoreU(hn::Load(d, from), d, to);
+  } else {
+    std::copy_n(from, count, to);
+  }
+}
+
 void evaluate_plane(const PlaneWaveSpectrum& spectrum, const Directions& directions, int begin, int end,
                     std::int32_t* sums) {
   static_assert(HWY_MAX_BYTES <= 4 * kMaxLanes);
@@ -115,7 +122,7 @@ void evaluate_plane(const PlaneWaveSpectrum& spectrum, const Directions& directi
                   load_some(&directions.z[first], some)};
     std::fill(rows.begin(), rows.end(), Row{});
     add_steps(spectrum, u, {begin, end}, rows.data()->data());
-    for (std::size_t n = 0; n < rows.size(); ++n) std::copy_n(rows[n].begin(), some, sums + n * count + first);
+    for (std::size_t n = 0; n < rows.size(); ++n) store_some(rows[n].data(), some, sums + n * count + first);
   }
 }
 

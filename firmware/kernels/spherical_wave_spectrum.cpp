@@ -50,9 +50,10 @@ SphericalWaveSpectrum::SphericalWaveSpectrum(std::span<const SphericalWaveRead> 
 
 void SphericalWaveSpectrum::evaluate_scalar(const CellBlock& block, BlockPower& power) const {
   for (int cell = 0; cell < kBlockCells; ++cell) {
-    const float x = block.first_m[0] + block.step_m[0] * static_cast<float>(cell / (kBlockSide * kBlockSide));
-    const float y = block.first_m[1] + block.step_m[1] * static_cast<float>(cell / kBlockSide % kBlockSide);
-    const float z = block.first_m[2] + block.step_m[2] * static_cast<float>(cell % kBlockSide);
+    const auto [i, j, k] = cell_index(cell);
+    const float x = block.first_m[0] + block.step_m[0] * static_cast<float>(i);
+    const float y = block.first_m[1] + block.step_m[1] * static_cast<float>(j);
+    const float z = block.first_m[2] + block.step_m[2] * static_cast<float>(k);
     float sum = 0.0F;
     for (const Group& group : groups_) {
       std::int32_t c = 0, s = 0;

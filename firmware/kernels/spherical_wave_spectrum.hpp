@@ -28,9 +28,14 @@ struct SphericalWaveRead {
   int group = 0;  // any number; reads of one group share their unknown offset
 };
 
-// Cells of a block: 4 along each axis. Cell (i, j, k) has the number 16 i + 4 j + k.
+// Cells of a block: 4 along each axis, z the fastest.
 inline constexpr int kBlockSide = 4;
 inline constexpr int kBlockCells = kBlockSide * kBlockSide * kBlockSide;
+
+// (i, j, k) of a cell.
+[[nodiscard]] constexpr std::array<int, 3> cell_index(int cell) {
+  return {cell / (kBlockSide * kBlockSide), cell / kBlockSide % kBlockSide, cell % kBlockSide};
+}
 
 // Centres: first + step * (i, j, k).
 struct CellBlock {
@@ -61,7 +66,7 @@ class SphericalWaveSpectrum {
     bool odd = false;                // the last pair's second read does not count
     float weight = 0.0F;             // 2^-30 / n_g
   };
-  using PairSquares = std::array<float, 2 * kBlockSide>;  // (t (x_i - ax))^2 of both reads
+  using PairSquares = std::array<float, std::size_t{2} * kBlockSide>;  // (t (x_i - ax))^2 of both reads
 
   explicit SphericalWaveSpectrum(std::span<const SphericalWaveRead> reads);
 

@@ -71,6 +71,7 @@ TEST(PlaneWaveSpectrum, EveryTargetEqualsTheScalarDefinitionAtAllLengthsAndAlign
         const Sphere sphere = random_directions(random, count + offset);
         const PlaneWaveSpectrum spectrum(any_steps(random, random.integer(1, 9)), kScales);
         expect_same_bits(spectrum, sphere.from(offset), 0, 16, offset);
+        if (::testing::Test::HasFatalFailure()) return;
       }
   });
 }
@@ -83,6 +84,7 @@ TEST(PlaneWaveSpectrum, EveryTargetEqualsTheScalarDefinitionForAnyNumberOfStepsA
       const PlaneWaveSpectrum spectrum(any_steps(random, count), kScales);
       const int begin = random.integer(0, 20);
       expect_same_bits(spectrum, sphere.from(0), begin, begin + random.integer(0, 20), 1);
+      if (::testing::Test::HasFatalFailure()) return;
     }
   });
 }
