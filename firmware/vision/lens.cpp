@@ -1,7 +1,7 @@
 #include "vision/lens.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
+#include <cmath>
 
 #include "vision/reprojection.hpp"
 
@@ -9,12 +9,13 @@ namespace rfmvo {
 namespace {
 
 // Errors of one point are alike from view to view, so they tell less than their number promises.
-constexpr double kNoise_px = 4.0;
+constexpr double kNoise_px = 2.0;
 constexpr double kMemory = 0.98;           // of a window for the next one: a lens changes slowly
 constexpr double kWindowShare = 1.0 / 15;  // of a window's pictures that the next one lacks
-constexpr double kMaxStep_k1 = 0.02;       // per window: what the first windows say is rough
-constexpr double kMaxStep_s = 0.005;
-constexpr double kHeld = 1e12;  // information of what must not move, px^2
+// How much smaller than the prior's a window's sigma is, for k1 and readout, when the lens is let go.
+constexpr double kClear[] = {7.0, 5.0};                    // measured: looser ones bend the rendered aisle
+constexpr double kSettled_k1 = 0.001, kSettled_s = 0.001;  // steps that hardly show: 0.2 px in the corner
+constexpr double kHeld = 1e12;                             // information of what must not move, px^2
 
 double information_of(double sigma) { return sigma > 0.0 ? kNoise_px * kNoise_px / (sigma * sigma) : kHeld; }
 
@@ -59,13 +60,33 @@ LensJacobian Lens::d_at_stamp(const Eigen::Vector2d& normalised, double y_px, co
   return J;
 }
 
+LensMatrix Lens::information() const {
+  LensMatrix result = prior_information_ + carried_information_;
+  for (int i = 0; i < 2; ++i) {
+    if (!shown_[i]) result(i, i) += kHeld;
+  }
+  return result;
+}
+
 LensVector Lens::expected_step() const {
-  return information().ldlt().solve(prior_information_ * prior_ + carried_information_ * carried_) - value_;
+  const LensMatrix known = prior_information_ + carried_information_;
+  LensVector step = known.ldlt().solve(prior_information_ * prior_ + carried_information_ * carried_) - value_;
+  for (int i = 0; i < 2; ++i) {
+    if (!shown_[i]) step(i) = 0.0;
+  }
+  return step;
 }
 
 void Lens::learn(const LensVector& step, const LensMatrix& window_information) {
-  value_ += LensVector(std::clamp(step(0), -kMaxStep_k1, kMaxStep_k1), std::clamp(step(1), -kMaxStep_s, kMaxStep_s));
+  value_ += step;
   camera_.radtan[0] = value_(0);
+  settling_ = std::abs(step(0)) > kSettled_k1 || std::abs(step(1)) > kSettled_s;
+  for (int i = 0; i < 2; ++i) {
+    const bool before = shown_[i];
+    shown_[i] = shown_[i] || window_information(i, i) > kClear[i] * kClear[i] * prior_information_(i, i);
+    settling_ = settling_ || shown_[i] != before;
+  }
+  if (!shown_[0] && !shown_[1]) return;
   const LensMatrix old = kMemory * carried_information_, fresh = kWindowShare * window_information;
   carried_information_ = old + fresh;
   if (carried_information_.determinant() > 0.0) {

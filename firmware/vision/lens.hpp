@@ -45,6 +45,8 @@ class Lens {
   [[nodiscard]] const CameraModel& camera() const { return camera_; }
   [[nodiscard]] double readout_s() const { return value_(1); }
   [[nodiscard]] bool is_free() const { return free_; }
+  // The last window moved the lens so far that a map made before does not fit it any more.
+  [[nodiscard]] bool is_settling() const { return settling_; }
 
   // Where the sight line would have met the image if all rows had been read at the stamp.
   [[nodiscard]] Eigen::Vector2d at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
@@ -52,8 +54,9 @@ class Lens {
   [[nodiscard]] LensJacobian d_at_stamp(const Eigen::Vector2d& normalised, double y_px, const Eigen::Vector3d& p_C,
                                         const Twist& twist) const;
 
-  // What is known besides the window at hand, as a quadratic cost in px^2 around expected_step().
-  [[nodiscard]] LensMatrix information() const { return prior_information_ + carried_information_; }
+  // What is known besides the window at hand, as a quadratic cost in px^2 around expected_step(). What no
+  // window has shown clearly yet is held: the first key frames would bend the map with a wild guess.
+  [[nodiscard]] LensMatrix information() const;
   [[nodiscard]] LensVector expected_step() const;
 
   // The window's answer: a step, and the information (px^2) of its images alone about it.
@@ -63,6 +66,8 @@ class Lens {
   CameraModel camera_;
   LensVector prior_, value_, carried_;
   LensMatrix prior_information_ = LensMatrix::Zero(), carried_information_ = LensMatrix::Zero();
+  bool shown_[2] = {false, false};
+  bool settling_ = false;
   bool free_ = false;
 };
 

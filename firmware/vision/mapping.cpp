@@ -88,6 +88,13 @@ void keep_scale(const std::vector<BundleView>& before, Window& w) {
   for (Eigen::Vector3d& p : w.bundle.points_V) p = origin.centre() + scale * (p - origin.centre());
 }
 
+// Turns and shifts everything so that the newest camera is where it was: the path goes on without a jump.
+void keep_newest(const BundleView& before, Window& w) {
+  const ViewPose now = w.bundle.views.back().T_C_V;
+  for (Eigen::Vector3d& p : w.bundle.points_V) p = before.T_C_V.to_V(now * p);
+  for (BundleView& view : w.bundle.views) view.T_C_V = composed(relative(view.T_C_V, now), before.T_C_V);
+}
+
 void write_back(Map& map, const Window& w, const Lens& lens, const MappingOptions& options) {
   for (std::size_t v = 0; v < w.keyframes.size(); ++v) map.find(w.keyframes[v])->T_C_V = w.bundle.views[v].T_C_V;
   for (std::size_t p = 0; p < w.landmarks.size(); ++p) {
@@ -134,7 +141,7 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
 void adjust_window(Map& map, Lens& lens, const MappingOptions& options) {
   if (map.keyframes.size() < 2) return;
   const std::int64_t newest = map.keyframes.back().id;
-  const bool full = static_cast<int>(map.keyframes.size()) > options.window;
+  const bool full = static_cast<int>(map.keyframes.size()) > options.window && !lens.is_settling();
   const std::int64_t first = full ? newest - options.window + 1 : map.keyframes.front().id;
   Window w = gather(map, lens, first);
   if (w.bundle.views.size() < 2) return;
@@ -146,6 +153,7 @@ void adjust_window(Map& map, Lens& lens, const MappingOptions& options) {
   const std::vector<BundleView> before = w.bundle.views;
   const BundleReport report = adjust_bundle(w.bundle, {options.focal_px, kBundleHuber_px, kBundleIterations});
   if (!full) keep_scale(before, w);
+  if (lens.is_settling()) keep_newest(before.back(), w);
   if (lens.is_free()) {
     lens.learn(w.bundle.lens.step, report.lens_information);
     undistort_again(map, lens.camera());

@@ -23,7 +23,8 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
 
 // Bundle adjustment of the newest key frames and all landmarks they see; older key frames that see
 // them stay fixed. Until there are older ones, the first pose and the scale of the path are kept.
-// A free lens is adjusted, too; the landmarks' sight lines then follow it.
+// A free lens is adjusted, too; the landmarks' sight lines then follow it. While it settles, all key
+// frames are adjusted: old ones that stayed would hold it where it was.
 void adjust_window(Map& map, Lens& lens, const MappingOptions& options);
 
 // Drops key frames beyond the archive, and landmarks that neither a key frame nor a track needs.
