@@ -35,7 +35,6 @@ void JointSegment::estimate_drift() {
     if (factor != before.drift_factor_) trial.refine(1);
     const double likelihood =
         log_marginal_likelihood(trial.problem_for(epcs, std::exp(trial.shared_.log_scale)), trial.state_for(epcs));
-    if (getenv("DBG")) printf("   drift %.0f ml %.1f scale %.4f\n", factor, likelihood, std::exp(trial.shared_.log_scale));
     if (!chosen || likelihood > best) {
       best = likelihood;
       chosen = trial;

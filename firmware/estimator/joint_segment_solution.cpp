@@ -133,7 +133,6 @@ void JointSegment::iterate(bool thorough) {
     refine(thorough ? 2 : 1);
     if (thorough && round > 0) estimate_drift();
     compute_covariance();
-    if (getenv("DBG")) { printf("  round %d joined %zu evid %.1f scale %.4f drift %.0f\n", round, joined_tags().size(), total_evidence(), std::exp(shared_.log_scale), drift_factor_); }
   }
 }
 

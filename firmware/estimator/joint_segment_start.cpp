@@ -106,7 +106,6 @@ void JointSegment::consider_rivals() {
     // The same valley again tells nothing; one that is as deep may be deeper at a second look.
     constexpr double kSameValley = 0.01, kAsDeep = 30.0;
     const bool same = std::abs(rival.shared_.log_scale - shared_.log_scale) < kSameValley;
-    if (getenv("DBG")) printf("   rival start %.4f ev %.1f -> %.4f ev %.1f (best %.1f)\n", std::exp(c.state.log_scale), c.evidence, rival.scale_m_per_unit(), e, best);
     if (same ? e > best : e > best - kAsDeep) {
       rival.iterate(true);
       e = rival.total_evidence();

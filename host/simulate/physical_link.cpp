@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using Complex = std::complex<double>;
 
 // Budget at 1 m on boresight, as in statistical_link.cpp: 30 dBm into 8 dBi.
-constexpr double kRssiAtOneMetre_dbm = -40.0;
+constexpr double kRssiAtOneMetre_dbm = -30.0;
 constexpr double kTagPowerAtOneMetre_dbm = 5.0;
 constexpr double kTagSensitivity_dbm = -18.0;
 constexpr double kReaderSensitivity_dbm = -80.0;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr DeviceTime kEpoch{1'767'225'600'000'000'000};  // 2026-01-01 00:00 UTC
 constexpr double kTick_s = 1.0;
+constexpr double kRenderedK1Sigma = 0.002, kRenderedReadoutSigma_s = 0.0005;  // of a good calibration
 constexpr double kMaxGapShare = 0.5;  // of the run, so that a path is left on both sides
 
 // Journals count microseconds.
@@ -131,6 +132,11 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   Start start;
   start.time = at(scene.start_s());
   start.config.estimator.pose_source = with_frames ? "frames" : "poses";
+  if (options.images_dir.empty()) {
+    // The rendering camera is a pinhole with a global shutter, and its calibration says so.
+    start.config.vision.k1_sigma = kRenderedK1Sigma;
+    start.config.vision.readout_sigma_s = kRenderedReadoutSigma_s;
+  }
   start.calibration = nominal_of(scene.calibration, scene.frame_offset_sigma_m, options.seed);
   if (Status s = sink(start); !s.ok()) return s.error();
   if (Status s = feed(scene, with_frames, gap, small_events(scene, options, drifted.poses), sink); !s.ok())

@@ -7,7 +7,9 @@
 namespace rfmvo::simulate {
 namespace {
 
-constexpr double kRssiAtOneMetre_dbm = -30.0;  // round trip on boresight; then -12 dB per doubling
+// Round trip on boresight, then -12 dB per doubling: of the 5 dBm below, -6 dB are reflected; back the same way
+// -31.7 dB - 3 dB + 2 dB + 8 dB; cables and mismatch take 4 dB.
+constexpr double kRssiAtOneMetre_dbm = -30.0;
 // 30 dBm into 8 dBi circular, -31.7 dB of free space over 1 m at 920 MHz, -3 dB circular to linear,
 // 2 dBi tag: 5 dBm at the tag.
 constexpr double kTagPowerAtOneMetre_dbm = 5.0;

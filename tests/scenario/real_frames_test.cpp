@@ -96,8 +96,7 @@ TEST(RealFrames, TagsAndScaleInTheKitchenOverTenSeeds) {
 
   EXPECT_EQ(joint_located, total);
   EXPECT_LE(scale_error, 0.05);
-  // Measured, as docs/accuracy.md explains; the goal is 0.15 m.
-  EXPECT_LE(joint_error_m, 0.45);
+  EXPECT_LE(joint_error_m, 0.15);
   EXPECT_TRUE(paper_located < joint_located || paper_error_m > joint_error_m);
 }
 
