@@ -33,15 +33,15 @@ Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, double le
 }
 
 void condition(std::size_t i, const std::vector<JointRead>& reads, double sigma_rad, double length_m, Lean& n) {
-  Eigen::Matrix<double, 4, 4> distance = Eigen::Matrix<double, 4, 4>::Zero();
-  Eigen::Vector4d white = Eigen::Vector4d::Zero();
   const auto at = [&](std::size_t k) -> const JointRead& { return reads[k == 0 ? i : n.neighbour[k - 1]]; };
   for (std::size_t a = 0; a <= n.count; ++a) {
-    white[static_cast<Eigen::Index>(a)] = at(a).white_rad2;
-    for (std::size_t b = 0; b <= n.count; ++b)
-      distance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = (at(a).p_W_A - at(b).p_W_A).norm();
+    n.white_rad2[static_cast<Eigen::Index>(a)] = at(a).white_rad2;
+    for (std::size_t b = 0; b < a; ++b) {
+      const auto r = static_cast<Eigen::Index>(a), c = static_cast<Eigen::Index>(b);
+      n.correlation(r, c) = n.correlation(c, r) = structured_correlation((at(a).p_W_A - at(b).p_W_A).norm(), length_m);
+    }
   }
-  n.given = condition_on_neighbours(n.count, distance, white, sigma_rad, length_m);
+  n.given = condition_on_correlated(n.count, n.correlation, n.white_rad2, sigma_rad);
 }
 
 void add_scaled(WhitenedRow& row, const Raw& raw, const JointRead& read, double factor) {
@@ -95,6 +95,12 @@ ChainConditioning condition_chains(const std::vector<JointRead>& reads, double s
     condition(i, reads, structured_sigma_rad, length_m, c.reads.back());
   }
   return c;
+}
+
+void set_strength(double structured_sigma_rad, ChainConditioning& conditioning) {
+  conditioning.structured_sigma_rad = structured_sigma_rad;
+  for (Lean& n : conditioning.reads)
+    n.given = condition_on_correlated(n.count, n.correlation, n.white_rad2, structured_sigma_rad);
 }
 
 void predict_rows(const std::vector<JointRead>& reads, const JointState& state, const TagState& tag,

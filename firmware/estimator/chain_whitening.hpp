@@ -50,6 +50,8 @@ struct ChainConditioning {
   struct Read {
     std::array<std::size_t, Conditioning::kMaxNeighbours> neighbour{};
     std::size_t count = 0;
+    Eigen::Matrix4d correlation = Eigen::Matrix4d::Identity();  // of this read (0) and its neighbours
+    Eigen::Vector4d white_rad2 = Eigen::Vector4d::Zero();
     Conditioning given;
   };
   std::vector<Read> reads;
@@ -57,6 +59,9 @@ struct ChainConditioning {
 };
 [[nodiscard]] ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad,
                                                  double length_m);
+
+// The same chains, should the structured error be stronger or weaker.
+void set_strength(double structured_sigma_rad, ChainConditioning& conditioning);
 
 enum class Derivatives { kNone, kTag, kAll };
 

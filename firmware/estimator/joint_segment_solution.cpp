@@ -89,8 +89,9 @@ void JointSegment::refine(int rounds) {
   for (int round = 0; round < rounds; ++round) {
     (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
     estimate_structured_strength(problem, strength, state);
-    correlation_length_m_ = problem.correlation_length_m =
-        estimate_correlation_length(problem, state, config_.joint.correlation_length_m);
+    if (rounds > 1)
+      correlation_length_m_ = problem.correlation_length_m =
+          estimate_correlation_length(problem, state, config_.joint.correlation_length_m);
   }
   (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
   for (auto& [epc, tag] : tags_) tag.joined = false;

@@ -95,7 +95,10 @@ void JointSegment::consider_rivals() {
   constexpr double kWorthATry = 60.0;  // nats below the best start
   JointSegment rival = *this;
   double first_evidence = 0.0;
-  for (const StartCandidate& c : rival.search_starts()) {
+  constexpr std::size_t kMaxRivals = 3;
+  std::vector<StartCandidate> starts = rival.search_starts();
+  if (starts.size() > kMaxRivals) starts.resize(kMaxRivals);
+  for (const StartCandidate& c : starts) {
     if (first_evidence == 0.0) first_evidence = c.evidence;
     if (c.evidence < first_evidence - kWorthATry) break;
     rival = *this;

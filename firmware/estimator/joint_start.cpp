@@ -168,7 +168,7 @@ std::vector<Rough> rough_starts(JointProblem problem, const JointState& blank, d
   for (const Agreement& agreement : agreements_about(problem, state, *places, o)) {
     Rough r{state, places, problem.reference_scale_m, 0.0};
     adopt(problem, *places, agreement, r.state);
-    r.cost = solve(problem, {.max_iterations = 8}, r.state).cost;
+    r.cost = solve(problem, {.max_iterations = 5}, r.state).cost;
     found.push_back(std::move(r));
   }
   return found;

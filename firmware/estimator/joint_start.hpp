@@ -17,7 +17,7 @@ struct StartOptions {
   double range_max_m = 4.0;
   std::size_t first_tags = 3, all_tags = 12;  // scales are sifted with the first, judged with all
   std::size_t max_reads = 32;                // per tag
-  std::size_t scales = 6;                    // that are looked at with all tags,
+  std::size_t scales = 5;                    // that are looked at with all tags,
   std::size_t offsets_per_scale = 3;         // sets of port offsets of each,
   std::size_t candidates = 5;                // best of both that are refined
 };

@@ -21,24 +21,26 @@ double white_sigma_rad(double rssi_dbm) {
   return kWeak_rad + (kMiddle_rad - kWeak_rad) * (rssi_dbm - kWeak_dbm) / (kMiddle_dbm - kWeak_dbm);
 }
 
-Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
-                                     const Eigen::Vector4d& white_rad2, double structured_sigma_rad, double length_m) {
+Conditioning condition_on_correlated(std::size_t count, const Eigen::Matrix<double, 4, 4>& correlation,
+                                     const Eigen::Vector4d& white_rad2, double structured_sigma_rad) {
   const double power = structured_sigma_rad * structured_sigma_rad;
   Conditioning c;
   c.variance_rad2 = power + white_rad2[0];
   if (count == 0) return c;
   const auto n = static_cast<Eigen::Index>(count);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> K(n, n);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> k(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    k[i] = power * structured_correlation(distances_m(0, i + 1), length_m);
-    for (Eigen::Index j = 0; j < n; ++j)
-      K(i, j) = power * structured_correlation(distances_m(i + 1, j + 1), length_m) + (i == j ? white_rad2[i + 1] : 0.0);
-  }
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> K = power * correlation.block(1, 1, n, n);
+  K.diagonal() += white_rad2.segment(1, n);
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> k = power * correlation.col(0).segment(1, n);
   const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> a = K.llt().solve(k);
   for (Eigen::Index i = 0; i < n; ++i) c.weights[static_cast<std::size_t>(i)] = a[i];
   c.variance_rad2 = std::max(c.variance_rad2 - k.dot(a), white_rad2[0]);
   return c;
+}
+
+Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
+                                     const Eigen::Vector4d& white_rad2, double structured_sigma_rad, double length_m) {
+  const Eigen::Matrix4d correlation = distances_m.unaryExpr([&](double d) { return structured_correlation(d, length_m); });
+  return condition_on_correlated(count, correlation, white_rad2, structured_sigma_rad);
 }
 
 }  // namespace rfmvo

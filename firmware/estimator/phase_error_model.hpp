@@ -26,6 +26,11 @@ struct Conditioning {
   double variance_rad2 = 1.0;  // of the error given the neighbours
 };
 
+// correlation(i, j) of the structured errors of samples 0..count (0 = this read, 1..count its neighbours),
+// white_rad2 alike.
+[[nodiscard]] Conditioning condition_on_correlated(std::size_t count, const Eigen::Matrix<double, 4, 4>& correlation,
+                                                   const Eigen::Vector4d& white_rad2, double structured_sigma_rad);
+
 // distances_m(i, j) between samples 0..count (0 = this read, 1..count its neighbours), white_rad2 alike.
 [[nodiscard]] Conditioning condition_on_neighbours(std::size_t count,
                                                    const Eigen::Matrix<double, 4, 4>& distances_m,

@@ -39,16 +39,22 @@ TagPlaces phasors_at(const std::vector<JointRead>& reads, const JointState& stat
   TagPlaces tag;
   tag.p_W_X = std::move(places);
   tag.reads = static_cast<double>(reads.size());
+  struct Seen {
+    Eigen::Vector3d p_W_A;
+    double wavenumber_rad_m, phase_rad;  // measured, less what the cable adds
+    std::size_t port;
+  };
+  std::vector<Seen> seen;
+  for (const JointRead& read : reads) {
+    const ReadStates s = states_at(read, state, TagState{});
+    seen.push_back({antenna_position(read.geometry, s), read.geometry.wavenumber_rad_m,
+                    read.phase_rad - read.geometry.frequency_term_rad_m * s.electrical_length_m,
+                    static_cast<std::size_t>(read.port)});
+  }
   for (const Eigen::Vector3d& place : tag.p_W_X) {
     std::vector<std::complex<double>>& phasor = tag.phasor.emplace_back(state.ports.size());
-    TagState at;
-    at.p_W_X = place;
-    for (const JointRead& read : reads) {
-      ReadStates states = states_at(read, state, at);
-      states.port_offset_rad = 0.0;
-      phasor[static_cast<std::size_t>(read.port)] +=
-          std::polar(1.0, read.phase_rad - predict_phase(read.geometry, states).phase_rad);
-    }
+    for (const Seen& s : seen)
+      phasor[s.port] += std::polar(1.0, s.phase_rad - s.wavenumber_rad_m * (s.p_W_A - place).norm());
   }
   return tag;
 }

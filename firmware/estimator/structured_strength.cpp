@@ -21,9 +21,9 @@ using LogLikelihood = std::array<double, kGrid>;
 
 // Restricted likelihood: the four unknowns of the tag are integrated out (-1/2 ln det J^T J).
 // whitened.raws are the tag's.
-double restricted_log_likelihood(const JointProblem& problem, std::size_t t, double sigma_rad, double length_m,
+double restricted_log_likelihood(const JointProblem& problem, std::size_t t, const ChainConditioning& conditioning,
                                  WhitenedTag& whitened) {
-  whiten_rows(problem.reads[t], problem, condition_chains(problem.reads[t], sigma_rad, length_m), Derivatives::kTag, whitened);
+  whiten_rows(problem.reads[t], problem, conditioning, Derivatives::kTag, whitened);
   Eigen::Matrix4d H = 1e-3 * Eigen::Matrix4d::Identity();
   for (const WhitenedRow& row : whitened.rows) H += row.weight * row.tag * row.tag.transpose();
   return -whitened.cost - 0.5 * whitened.log_variance - 0.5 * std::log(H.determinant());
@@ -32,8 +32,11 @@ double restricted_log_likelihood(const JointProblem& problem, std::size_t t, dou
 LogLikelihood of_tag(const JointProblem& problem, const JointState& state, std::size_t t, WhitenedTag& whitened) {
   LogLikelihood l{};
   predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
-  for (int i = 0; i < kGrid; ++i)
-    l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, t, grid_rad(i), problem.correlation_length_m, whitened);
+  ChainConditioning conditioning = condition_chains(problem.reads[t], grid_rad(0), problem.correlation_length_m);
+  for (int i = 0; i < kGrid; ++i) {
+    set_strength(grid_rad(i), conditioning);
+    l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, t, conditioning, whitened);
+  }
   return l;
 }
 
@@ -83,7 +86,8 @@ double estimate_correlation_length(const JointProblem& problem, const JointState
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
     for (std::size_t i = 0; i < l.size(); ++i)
-      l[i] += restricted_log_likelihood(problem, t, state.tags[t].structured_sigma_rad, kLengths_m[i], whitened);
+      l[i] += restricted_log_likelihood(
+          problem, t, condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, kLengths_m[i]), whitened);
   }
   const double top = *std::max_element(l.begin(), l.end());
   double sum = 0.0, mean = 0.0;

@@ -9,8 +9,8 @@
 
 namespace rfmvo {
 
-// x wrapped to [-pi, pi].
-[[nodiscard]] inline double wrap_rad(double x) { return std::remainder(x, kTwoPi); }
+// x wrapped to [-pi, pi], to the rounding of x. Several times faster than std::remainder.
+[[nodiscard]] inline double wrap_rad(double x) { return x - kTwoPi * std::nearbyint(x * (1.0 / kTwoPi)); }
 
 struct Phase {
   std::uint16_t turn_q16 = 0;  // phase / (2 pi) * 65536, modulo 65536
