@@ -175,5 +175,40 @@ TEST(PathPrior, TheTrapeziumOfARandomWalkErrsByACubeOverTwelve) {
   EXPECT_NEAR(squares / (kDensity * kDensity * std::pow(kTravel_m, 3) / 12.0), 1.0, 0.05);
 }
 
+// Two lever arms of own sigma s and common sigma c: a shift d of both has 2 d^2 / (s^2 + 2 c^2), of one against the
+// other 2 d^2 / s^2, both halved.
+TEST(PathPrior, LeverArmsMoveTogetherMoreEasilyThanApart) {
+  World w = world_at_rest();
+  w.problem.priors.lever_arms_common_sigma_m = 0.02;
+  constexpr double kShift_m = 0.01, kOwn_m = 0.003;
+  JointState together = w.truth, apart = w.truth;
+  for (std::size_t p = 0; p < 2; ++p) {
+    together.ports[p].lever_arm_C.y() += kShift_m;
+    apart.ports[p].lever_arm_C.y() += p == 0 ? kShift_m : -kShift_m;
+  }
+  EXPECT_NEAR(cost_of(w, together), kShift_m * kShift_m / (kOwn_m * kOwn_m + 2.0 * 0.02 * 0.02), 1e-9);
+  EXPECT_NEAR(cost_of(w, apart), kShift_m * kShift_m / (kOwn_m * kOwn_m), 1e-9);
+}
+
+TEST(PathPrior, GradientOfCommonLeverArmsIsNumeric) {
+  std::mt19937 random(47);
+  World w = world_at_rest();
+  w.problem.priors.lever_arms_common_sigma_m = 0.02;
+  const JointState state = disturbed(w.truth, random);
+  const Normal n = normal_of(w, state);
+  for (int p = 0; p < 2; ++p)
+    for (int i = 2; i < 5; ++i) {
+      const int c = layout_of(state).port(p) + i;
+      const double slope = joint_scene::slope(
+          [&](double h) {
+            JointState s = state;
+            shared_state(s, c) += h;
+            return cost_of(w, s);
+          },
+          1e-6);
+      EXPECT_NEAR(-n.g[c], slope, 1e-5 * (1.0 + std::abs(slope))) << p << ' ' << i;
+    }
+}
+
 }  // namespace
 }  // namespace rfmvo

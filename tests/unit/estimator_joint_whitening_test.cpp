@@ -241,5 +241,16 @@ TEST(ChainWhitening, ReusesItsWorkSpaceWithoutATrace) {
   for (std::size_t i = 0; i < fresh.rows.size(); ++i) EXPECT_EQ(used.rows[i].residual, fresh.rows[i].residual);
 }
 
+TEST(ChainConditioning, OfAnotherStrengthIsTheSameMadeAnew) {
+  Chain chain = straight_chain(12, 0.03, 0.01);
+  ChainConditioning changed = condition_chains(chain.reads(), 0.2, kLength_m);
+  set_strength(0.6, changed);
+  const ChainConditioning fresh = condition_chains(chain.reads(), 0.6, kLength_m);
+  for (std::size_t i = 0; i < fresh.reads.size(); ++i) {
+    EXPECT_EQ(changed.reads[i].given.variance_rad2, fresh.reads[i].given.variance_rad2);
+    EXPECT_EQ(changed.reads[i].given.weights, fresh.reads[i].given.weights);
+  }
+}
+
 }  // namespace
 }  // namespace rfmvo
