@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "config/config_table.hpp"
-#include "edges/toml_files.hpp"
 #include "edges/text_file.hpp"
+#include "edges/toml_files.hpp"
 #include "edges/toml_parts.hpp"
 
 namespace rfmvo {
@@ -45,7 +45,8 @@ class Section {
   }
 
   template <std::size_t N>
-  std::array<double, N> numbers(std::string_view key, std::string_view unit, double max, std::array<double, N> fallback) {
+  std::array<double, N> numbers(std::string_view key, std::string_view unit, double max,
+                                std::array<double, N> fallback) {
     const toml::node* node = find(key);
     if (node == nullptr || error_) return fallback;
     const toml::array* list = node->as_array();
@@ -115,7 +116,8 @@ class Section {
     if (!error_)
       error_ = Error{ErrorCode::kOutOfRange,
                      full(key) + ": " + shown + " is outside " + text_of(min) + " to " + text_of(max) +
-                         (unit.empty() ? "" : " " + std::string(unit)), place(where_, node)};
+                         (unit.empty() ? "" : " " + std::string(unit)),
+                     place(where_, node)};
     return fallback;
   }
 

@@ -122,8 +122,8 @@ void predict_rows(const std::vector<JointRead>& reads, const JointState& state, 
   }
 }
 
-void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem, const ChainConditioning& conditioning,
-                 Derivatives derivatives, WhitenedTag& out) {
+void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem,
+                 const ChainConditioning& conditioning, Derivatives derivatives, WhitenedTag& out) {
   std::vector<Raw>& raws = out.raws;
   out.rows.resize(reads.size());
   out.cost = out.log_variance = out.inliers = 0.0;
@@ -174,7 +174,8 @@ void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, co
             const TagState& tag, bool with_jacobian, WhitenedTag& out) {
   const Derivatives derivatives = with_jacobian ? Derivatives::kAll : Derivatives::kNone;
   predict_rows(reads, state, tag, derivatives, out);
-  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.correlation_length_m), derivatives, out);
+  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.correlation_length_m),
+              derivatives, out);
 }
 
 }  // namespace rfmvo

@@ -28,7 +28,7 @@ struct WhitenedRow {
 
 struct WhitenedTag {
   std::vector<WhitenedRow> rows;
-  double cost = 0.0;         // sum of robust losses (1/2 residual^2 for inliers) + flip penalties
+  double cost = 0.0;          // sum of robust losses (1/2 residual^2 for inliers) + flip penalties
   double log_variance = 0.0;  // sum of ln(conditional variance)
   double inliers = 0.0;
 
@@ -70,8 +70,8 @@ enum class Derivatives { kNone, kTag, kAll };
 void predict_rows(const std::vector<JointRead>& reads, const JointState& state, const TagState& tag,
                   Derivatives derivatives, WhitenedTag& out);
 // From out.raws, whoever made them, everything else of out.
-void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem, const ChainConditioning& conditioning,
-                 Derivatives derivatives, WhitenedTag& out);
+void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& problem,
+                 const ChainConditioning& conditioning, Derivatives derivatives, WhitenedTag& out);
 
 // Both, and the conditioning too.
 void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,

@@ -12,13 +12,13 @@ namespace rfmvo {
 
 // Drift of the odometry, corrected at knots along the path and interpolated between them.
 struct KnotState {
-  Eigen::Vector3d path_correction_W = Eigen::Vector3d::Zero();  // d, m
+  Eigen::Vector3d path_correction_W = Eigen::Vector3d::Zero();      // d, m
   Eigen::Vector3d rotation_correction_W = Eigen::Vector3d::Zero();  // theta, rad
-  double log_scale_drift = 0.0;                                  // epsilon: scale here / scale at the start - 1
+  double log_scale_drift = 0.0;                                     // epsilon: scale here / scale at the start - 1
 };
 
 struct PortState {
-  double offset_rad = 0.0;           // relative to the first port
+  double offset_rad = 0.0;  // relative to the first port
   double electrical_length_m = 0.0;
   Eigen::Vector3d lever_arm_C = Eigen::Vector3d::Zero();
 };
@@ -39,13 +39,13 @@ struct JointState {
 
 struct JointRead {
   ReadGeometry geometry;
-  double phase_rad = 0.0;     // measured
-  double white_rad2 = 0.0;    // variance of the uncorrelated error
-  double rssi_db = 0.0;       // dBm
+  double phase_rad = 0.0;                           // measured
+  double white_rad2 = 0.0;                          // variance of the uncorrelated error
+  double rssi_db = 0.0;                             // dBm
   Eigen::Vector3d p_W_A = Eigen::Vector3d::Zero();  // antenna at the reference scale: distances between reads
-  int port = 0;               // index into ports
-  int knot = 0;               // the read lies between knot and knot + 1,
-  double knot_fraction = 0.0;  // this far along
+  int port = 0;                                     // index into ports
+  int knot = 0;                                     // the read lies between knot and knot + 1,
+  double knot_fraction = 0.0;                       // this far along
 };
 
 // The stretch of path between two neighbouring knots.
@@ -69,10 +69,11 @@ struct JointProblem {
   std::vector<std::vector<JointRead>> reads;  // per tag; grouped by port, in time order within a port
   std::vector<KnotInterval> intervals;        // knots - 1
   JointPriors priors;
-  double reference_scale_m = 1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
+  double reference_scale_m =
+      1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
   double correlation_length_m = 0.058;
-  double flip_probability = 0.003;     // of a pi flip
-  double outlier_probability = 0.01;   // of a phase that tells nothing
+  double flip_probability = 0.003;    // of a pi flip
+  double outlier_probability = 0.01;  // of a phase that tells nothing
 };
 
 [[nodiscard]] ReadStates states_at(const JointRead& read, const JointState& state, const TagState& tag);

@@ -10,8 +10,8 @@
 namespace rfmvo {
 namespace {
 
-constexpr std::size_t kMaxReadsPerChain = 120;  // more are thinned: neighbours tell nearly the same
-constexpr double kDecided = 6.0;                // ln likelihood ratio between two scales
+constexpr std::size_t kMaxReadsPerChain = 120;            // more are thinned: neighbours tell nearly the same
+constexpr double kDecided = 6.0;                          // ln likelihood ratio between two scales
 constexpr double kMinUHF_hz = 840e6, kMaxUHF_hz = 960e6;  // EPC Gen2, all regions
 
 }  // namespace

@@ -29,12 +29,12 @@ struct SegmentTag {
   DeviceTime last_read;
 
   TagState state;
-  std::vector<TagMode> modes;    // best first
+  std::vector<TagMode> modes;      // best first
   std::size_t reads_at_modes = 0;  // when they were looked for
   PossiblePlaces places;
   std::size_t reads_at_places = 0;  // when they were searched
-  bool placed = false;           // state holds a position
-  bool joined = false;           // took part in the joint solution
+  bool placed = false;              // state holds a position
+  bool joined = false;              // took part in the joint solution
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   Eigen::MatrixXd shared_covariance;  // 4 x shared states
 };
@@ -111,7 +111,7 @@ class JointSegment {
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show
   double scale_walk_per_sqrt_m_ = 0.0, rotation_walk_rad_per_sqrt_m_ = 0.0, position_walk_m_per_sqrt_m_ = 0.0;
   double knot_spacing_V_ = 1.0;
-  JointState shared_;             // tags stand in tags_
+  JointState shared_;  // tags stand in tags_
   JointCovariance covariance_;
   std::uint32_t revision_ = 0;
   std::uint64_t rejected_ = 0;

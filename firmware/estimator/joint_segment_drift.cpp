@@ -17,7 +17,8 @@ constexpr double kTurnExponent = 0.63;  // 3^0.63 = 2
 void JointSegment::set_drift(double factor) {
   drift_factor_ = factor;
   scale_walk_per_sqrt_m_ = factor * config_.joint.vo_scale_walk_per_sqrt_m;
-  rotation_walk_rad_per_sqrt_m_ = std::pow(factor, kTurnExponent) * rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
+  rotation_walk_rad_per_sqrt_m_ =
+      std::pow(factor, kTurnExponent) * rad_from_deg(config_.joint.vo_rotation_walk_deg_per_sqrt_m);
   position_walk_m_per_sqrt_m_ = factor * config_.joint.vo_position_walk_m_per_sqrt_m;
 }
 

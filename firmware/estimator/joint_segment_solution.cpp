@@ -149,5 +149,4 @@ void JointSegment::solve(bool thorough) {
   if (!thorough && (!believable || !scale_observable())) started_ = false;
 }
 
-
 }  // namespace rfmvo

@@ -95,12 +95,13 @@ void JointSegment::consider_rivals() {
   constexpr double kWorthATry = 60.0;  // nats below the best start
   JointSegment rival = *this;
   double first_evidence = 0.0;
-  constexpr std::size_t kMaxRivals = 3;
-  std::vector<StartCandidate> starts = rival.search_starts();
-  if (starts.size() > kMaxRivals) starts.resize(kMaxRivals);
-  for (const StartCandidate& c : starts) {
+  constexpr int kMaxRivals = 2;  // with about this scale, and as many with another
+  int near = 0, far = 0;
+  for (const StartCandidate& c : rival.search_starts()) {
     if (first_evidence == 0.0) first_evidence = c.evidence;
     if (c.evidence < first_evidence - kWorthATry) break;
+    int& tried = std::abs(c.state.log_scale - shared_.log_scale) > kMaterialScale ? far : near;
+    if (tried++ >= kMaxRivals) continue;
     rival = *this;
     rival.adopt(c);
     rival.iterate(false);  // enough to compare; only a better one is worth the whole effort

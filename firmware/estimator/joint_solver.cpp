@@ -44,8 +44,7 @@ int gather(const WhitenedRow& row, const SharedLayout& layout, std::array<int, 6
   for (int i = 1; i < SharedLayout::kPerPort; ++i) add(layout.port(row.port) + i, row.globals[2 + i]);
   for (int k = 0; k < row.knots; ++k) {
     if (row.first_knot + k == 0) continue;
-    for (int i = 0; i < 6; ++i)
-      add(layout.knot(row.first_knot + k) + i, row.knot[static_cast<std::size_t>(k)][i]);
+    for (int i = 0; i < 6; ++i) add(layout.knot(row.first_knot + k) + i, row.knot[static_cast<std::size_t>(k)][i]);
   }
   return n;
 }
@@ -81,7 +80,8 @@ using Chains = std::vector<ChainConditioning>;  // per tag
 Chains chains_of(const JointProblem& problem, const JointState& state) {
   Chains chains;
   for (std::size_t t = 0; t < problem.reads.size(); ++t)
-    chains.push_back(condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.correlation_length_m));
+    chains.push_back(
+        condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.correlation_length_m));
   return chains;
 }
 
@@ -205,7 +205,8 @@ double evidence(const JointProblem& problem, const JointState& state) {
   WhitenedTag whitened;
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     whiten(problem.reads[t], problem, state, state.tags[t], false, whitened);
-    sum += uniform_cost * static_cast<double>(problem.reads[t].size()) - whitened.cost - 0.5 * whitened.log_variance - kLogPlaces;
+    sum += uniform_cost * static_cast<double>(problem.reads[t].size()) - whitened.cost - 0.5 * whitened.log_variance -
+           kLogPlaces;
   }
   const SharedLayout layout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   return sum - add_path_prior(problem, state, layout, nullptr, nullptr);

@@ -15,15 +15,15 @@ namespace rfmvo {
 struct SharedLayout {
   int ports = 0, knots = 0;
   static constexpr int kLogScale = 0, kTimeOffset = 1, kFirstPort = 2, kPerPort = 5, kPerKnot = 7;
-  [[nodiscard]] int port(int p) const { return kFirstPort + kPerPort * p; }             // offset, length, lever arm (3)
-  [[nodiscard]] int knot(int k) const { return port(ports) + kPerKnot * (k - 1); }      // k >= 1: d (3), theta (3), epsilon
+  [[nodiscard]] int port(int p) const { return kFirstPort + kPerPort * p; }         // offset, length, lever arm (3)
+  [[nodiscard]] int knot(int k) const { return port(ports) + kPerKnot * (k - 1); }  // k >= 1: d (3), theta (3), epsilon
   [[nodiscard]] int size() const { return port(ports) + kPerKnot * (knots - 1); }
 };
 
 struct SolverOptions {
   int max_iterations = 12;
-  double step_tolerance = 1e-5;      // relative decrease of the cost that ends the iteration
-  bool shared_fixed = false;         // only the tags move (a known path)
+  double step_tolerance = 1e-5;  // relative decrease of the cost that ends the iteration
+  bool shared_fixed = false;     // only the tags move (a known path)
 };
 
 struct SolverReport {

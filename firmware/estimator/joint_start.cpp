@@ -13,15 +13,16 @@
 namespace rfmvo {
 namespace {
 
-constexpr std::size_t kMinReads = 8;   // of a tag that takes part: four unknowns and some to judge by
-constexpr double kSameScale = 0.045;   // two starts this near in ln(scale) are one
+constexpr std::size_t kMinReads = 8;  // of a tag that takes part: four unknowns and some to judge by
+constexpr double kSameScale = 0.045;  // two starts this near in ln(scale) are one
 
 struct ScalePower {
   double log_scale = 0.0;
   double power = 0.0;
 };
 
-SpectrumOptions spectrum_options(const std::vector<SpectrumRead>& reads, double finest_m, const StartOptions& o, int peaks) {
+SpectrumOptions spectrum_options(const std::vector<SpectrumRead>& reads, double finest_m, const StartOptions& o,
+                                 int peaks) {
   constexpr double kWidest_m = 0.3;
   return {.cell_m = suitable_cell(reads, finest_m, kWidest_m), .range_max_m = o.range_max_m, .max_peaks = peaks};
 }
@@ -50,10 +51,10 @@ double power_of(const JointProblem& problem, const JointState& state, const std:
 }
 
 // Scales in falling order of power, each a local best of its neighbourhood.
-std::vector<ScalePower> best_scales(const JointProblem& problem, JointState state,
-                                    const std::vector<std::size_t>& tags, const BeamModel& beams,
-                                    const StartOptions& o) {
-  const std::vector<std::size_t> first(tags.begin(), tags.begin() + static_cast<std::ptrdiff_t>(std::min(o.first_tags, tags.size())));
+std::vector<ScalePower> best_scales(const JointProblem& problem, JointState state, const std::vector<std::size_t>& tags,
+                                    const BeamModel& beams, const StartOptions& o) {
+  const std::vector<std::size_t> first(tags.begin(),
+                                       tags.begin() + static_cast<std::ptrdiff_t>(std::min(o.first_tags, tags.size())));
   const std::vector<std::size_t> rest(tags.begin() + static_cast<std::ptrdiff_t>(first.size()), tags.end());
   std::vector<ScalePower> scales;
   for (double s = o.log_scale_min; s <= o.log_scale_max; s += o.log_scale_step) {
@@ -113,8 +114,8 @@ struct Agreement {
   PortOffsets offsets;
 };
 
-void adopt(const JointProblem& problem, const std::vector<PossiblePlaces>& places,
-           const Agreement& agreement, JointState& state) {
+void adopt(const JointProblem& problem, const std::vector<PossiblePlaces>& places, const Agreement& agreement,
+           JointState& state) {
   const std::vector<double>& offset_rad = agreement.offsets.offset_rad;
   state.log_scale = agreement.log_scale;
   for (std::size_t p = 0; p < state.ports.size(); ++p) state.ports[p].offset_rad = offset_rad[p];
@@ -139,7 +140,8 @@ std::vector<Agreement> agreements_about(const JointProblem& problem, JointState 
   for (int step = -kFiner; step <= kFiner; ++step) {
     state.log_scale = middle + 0.5 * o.log_scale_step * step / kFiner;
     std::vector<TagPlaces> tags;
-    for (std::size_t t = 0; t < places.size(); ++t) tags.push_back(phasors_at(problem.reads[t], state, places[t].at(state.log_scale)));
+    for (std::size_t t = 0; t < places.size(); ++t)
+      tags.push_back(phasors_at(problem.reads[t], state, places[t].at(state.log_scale)));
     for (PortOffsets& offsets : scan_port_offsets(tags, state.ports.size(), o.offsets_per_scale))
       found.push_back({state.log_scale, std::move(offsets)});
   }
@@ -214,7 +216,8 @@ std::vector<StartCandidate> find_starts(const JointProblem& problem, const Joint
   // Neighbouring steps of the grid lead to the same place.
   std::vector<Rough> distinct;
   for (Rough& r : rough) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Rough& d) { return same_start(d.state, r.state); });
+    const bool known =
+        std::any_of(distinct.begin(), distinct.end(), [&](const Rough& d) { return same_start(d.state, r.state); });
     if (!known && distinct.size() < options.candidates) distinct.push_back(std::move(r));
   }
   std::vector<StartCandidate> found;

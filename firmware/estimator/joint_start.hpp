@@ -16,17 +16,17 @@ struct StartOptions {
   double coarse_cell_m = 0.10;
   double range_max_m = 4.0;
   std::size_t first_tags = 3, all_tags = 12;  // scales are sifted with the first, judged with all
-  std::size_t max_reads = 32;                // per tag
-  std::size_t scales = 5;                    // that are looked at with all tags,
-  std::size_t offsets_per_scale = 3;         // sets of port offsets of each,
-  std::size_t candidates = 5;                // best of both that are refined
+  std::size_t max_reads = 32;                 // per tag
+  std::size_t scales = 5;                     // that are looked at with all tags,
+  std::size_t offsets_per_scale = 3;          // sets of port offsets of each,
+  std::size_t candidates = 5;                 // best of both that are refined
 };
 
 struct StartCandidate {
-  JointState state;                // tags that were not used keep their state
-  std::vector<std::size_t> used;   // tags that took part,
+  JointState state;                    // tags that were not used keep their state
+  std::vector<std::size_t> used;       // tags that took part,
   std::vector<PossiblePlaces> places;  // and where they may be at this scale
-  double evidence = 0.0;           // of the tags that took part, see joint_solver.hpp
+  double evidence = 0.0;               // of the tags that took part, see joint_solver.hpp
 };
 
 // Candidates with distinct scales, best first. `state` brings priors (lever arms, electrical

@@ -54,7 +54,9 @@ IntervalSigma interval_sigma(const JointProblem& problem, std::size_t k) {
           std::hypot(priors.position_walk_m_per_sqrt_m * walk, density * walk * length_m / std::sqrt(12.0))};
 }
 
-int knot_column(const SharedLayout& layout, int knot, int offset) { return knot == 0 ? -1 : layout.knot(knot) + offset; }
+int knot_column(const SharedLayout& layout, int knot, int offset) {
+  return knot == 0 ? -1 : layout.knot(knot) + offset;
+}
 
 double add_interval(const JointProblem& problem, const JointState& state, const SharedLayout& layout, int k,
                     Eigen::MatrixXd* H, Eigen::VectorXd* g) {

@@ -32,8 +32,7 @@ struct Conditioning {
                                                    const Eigen::Vector4d& white_rad2, double structured_sigma_rad);
 
 // distances_m(i, j) between samples 0..count (0 = this read, 1..count its neighbours), white_rad2 alike.
-[[nodiscard]] Conditioning condition_on_neighbours(std::size_t count,
-                                                   const Eigen::Matrix<double, 4, 4>& distances_m,
+[[nodiscard]] Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
                                                    const Eigen::Vector4d& white_rad2, double structured_sigma_rad,
                                                    double length_m);
 

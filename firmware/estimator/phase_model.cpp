@@ -23,7 +23,8 @@ Eigen::Vector3d antenna_position(const ReadGeometry& g, const ReadStates& s) {
 
 double predicted_phase_rad(const ReadGeometry& g, const ReadStates& s) {
   const double distance = std::max((antenna_position(g, s) - s.p_W_X).norm(), kMinDistance_m);
-  return g.wavenumber_rad_m * distance + s.tag_offset_rad + s.port_offset_rad + g.frequency_term_rad_m * s.electrical_length_m;
+  return g.wavenumber_rad_m * distance + s.tag_offset_rad + s.port_offset_rad +
+         g.frequency_term_rad_m * s.electrical_length_m;
 }
 
 PredictedPhase predict_phase(const ReadGeometry& g, const ReadStates& s) {

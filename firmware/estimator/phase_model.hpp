@@ -10,22 +10,22 @@ namespace rfmvo {
 
 // What is known about one read before anything is estimated.
 struct ReadGeometry {
-  Eigen::Vector3d n_W = Eigen::Vector3d::Zero();       // unscaled camera displacement since the segment's start, axes of W
-  Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();  // d n_W / dt, units of V per second
-  Eigen::Matrix3d R_W_C = Eigen::Matrix3d::Identity();   // odometry's rotation
+  Eigen::Vector3d n_W = Eigen::Vector3d::Zero();  // unscaled camera displacement since the segment's start, axes of W
+  Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();          // d n_W / dt, units of V per second
+  Eigen::Matrix3d R_W_C = Eigen::Matrix3d::Identity();           // odometry's rotation
   Eigen::Vector3d angular_velocity_C = Eigen::Vector3d::Zero();  // rad/s
-  double wavenumber_rad_m = 0.0;                       // 4 pi f / c: there and back
-  double frequency_term_rad_m = 0.0;                   // 4 pi (f - f_ref) / c: phase per metre of electrical length
+  double wavenumber_rad_m = 0.0;                                 // 4 pi f / c: there and back
+  double frequency_term_rad_m = 0.0;  // 4 pi (f - f_ref) / c: phase per metre of electrical length
 };
 
 // The states that one read depends on, at the read's time.
 struct ReadStates {
-  double log_scale = 0.0;        // ln(metres per unit of V)
-  double time_offset_s = 0.0;    // camera time = read time + offset
+  double log_scale = 0.0;      // ln(metres per unit of V)
+  double time_offset_s = 0.0;  // camera time = read time + offset
   double port_offset_rad = 0.0;
   double electrical_length_m = 0.0;
   Eigen::Vector3d lever_arm_C = Eigen::Vector3d::Zero();
-  Eigen::Vector3d path_correction_W = Eigen::Vector3d::Zero();  // d, m
+  Eigen::Vector3d path_correction_W = Eigen::Vector3d::Zero();      // d, m
   Eigen::Vector3d rotation_correction_W = Eigen::Vector3d::Zero();  // theta, rad
   Eigen::Vector3d p_W_X = Eigen::Vector3d::Zero();
   double tag_offset_rad = 0.0;

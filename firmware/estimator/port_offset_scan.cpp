@@ -35,7 +35,8 @@ std::vector<double> sweep(const std::vector<TagPlaces>& tags, std::vector<double
 
 }  // namespace
 
-TagPlaces phasors_at(const std::vector<JointRead>& reads, const JointState& state, std::vector<Eigen::Vector3d> places) {
+TagPlaces phasors_at(const std::vector<JointRead>& reads, const JointState& state,
+                     std::vector<Eigen::Vector3d> places) {
   TagPlaces tag;
   tag.p_W_X = std::move(places);
   tag.reads = static_cast<double>(reads.size());
@@ -92,7 +93,8 @@ std::vector<PortOffsets> scan_port_offsets(const std::vector<TagPlaces>& tags, s
     }
     found.push_back(std::move(o));
   }
-  std::stable_sort(found.begin(), found.end(), [](const PortOffsets& a, const PortOffsets& b) { return a.power > b.power; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const PortOffsets& a, const PortOffsets& b) { return a.power > b.power; });
   if (found.size() > count) found.resize(count);
   return found;
 }

@@ -18,15 +18,15 @@ constexpr double kSameMode_m = 0.03;
 constexpr double kMaxCostAbove = 40.0;
 
 // Local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
-std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const JointProblem& problem, const JointState& state,
-                                const TagState& like, const BeamModel& beams, const std::vector<Eigen::Vector3d>& places) {
+std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const JointProblem& problem,
+                                const JointState& state, const TagState& like, const BeamModel& beams,
+                                const std::vector<Eigen::Vector3d>& places) {
   TagLikelihood likelihood(reads, problem, state, like.structured_sigma_rad);
   std::vector<TagMode> modes;
   for (const Eigen::Vector3d& place : places) {
     const TagLikelihood::Maximum top = likelihood.climb(place);
-    const bool known = std::any_of(modes.begin(), modes.end(), [&](const TagMode& m) {
-      return (m.tag.p_W_X - top.p_W_X).norm() < kSameMode_m;
-    });
+    const bool known = std::any_of(modes.begin(), modes.end(),
+                                   [&](const TagMode& m) { return (m.tag.p_W_X - top.p_W_X).norm() < kSameMode_m; });
     // A climb may leave the grid that it started on.
     constexpr double kMostReads = 0.5;
     if (known || !top.p_W_X.allFinite() || likelihood.share_within(beams.range_max_m, top.p_W_X) < kMostReads) continue;
@@ -66,7 +66,8 @@ std::vector<SpectrumRead> spectrum_reads(const std::vector<JointRead>& reads, co
     const auto port = static_cast<std::size_t>(read.port);
     s.boresight_W = (read.geometry.R_W_C * beams.boresight_C[port]).cast<float>();
     s.turns_per_m = static_cast<float>(read.geometry.wavenumber_rad_m / kTwoPi);
-    const double own = read.geometry.frequency_term_rad_m * states.electrical_length_m + (coherent ? states.port_offset_rad : 0.0);
+    const double own =
+        read.geometry.frequency_term_rad_m * states.electrical_length_m + (coherent ? states.port_offset_rad : 0.0);
     s.phase_turns = static_cast<float>(wrap_rad(read.phase_rad - own) / kTwoPi);
     s.group = coherent ? 0 : read.port;
     out.push_back(s);
@@ -97,7 +98,8 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
   const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[index], state, beams, true, kReads);
   std::vector<SpectrumPeak> ranked;
   for (const Eigen::Vector3d& p : places) ranked.push_back({p, near_field_power(reads, p), 0.0});
-  std::stable_sort(ranked.begin(), ranked.end(), [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
   if (ranked.size() > count) ranked.resize(count);
   std::vector<Eigen::Vector3d> best;
   for (const SpectrumPeak& peak : ranked) best.push_back(peak.p_W_X);

@@ -14,10 +14,10 @@ namespace rfmvo {
 struct TagMode {
   TagState tag;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // (position, offset) given the shared states
-  double cost = 0.0;    // of the phases, as solve() has it
-  double signal_cost = 0.0;  // of the signal strengths
+  double cost = 0.0;                                     // of the phases, as solve() has it
+  double signal_cost = 0.0;                              // of the signal strengths
   double log_evidence = 0.0;  // ln of its share of the likelihood's integral, up to a constant of the tag
-  double weight = 0.0;  // posterior probability among the modes (Laplace's approximation)
+  double weight = 0.0;        // posterior probability among the modes (Laplace's approximation)
 };
 
 // Reads of one tag as the spectrum wants them, at the given states. With `coherent` all ports form
@@ -48,7 +48,8 @@ struct PlaceOptions {
 [[nodiscard]] PossiblePlaces search_places(const std::vector<JointRead>& reads, const JointState& state,
                                            const BeamModel& beams, const PlaceOptions& options);
 
-// Modes of tag `index`, best first; shared states fixed: the places where all ports agree best, refined. At most `count`.
+// Modes of tag `index`, best first; shared states fixed: the places where all ports agree best, refined. At most
+// `count`.
 [[nodiscard]] std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
                                               const BeamModel& beams, const std::vector<Eigen::Vector3d>& places,
                                               std::size_t count);

@@ -28,8 +28,8 @@ struct Options {
 
 struct Run {
   std::vector<CameraPose> poses;
-  std::vector<double> cpu_ms;  // of the odometry, per frame, without reading the image
-  double total_cpu_s = 0.0;    // with reading
+  std::vector<double> cpu_ms;        // of the odometry, per frame, without reading the image
+  double total_cpu_s = 0.0;          // with reading
   double k1 = 0.0, readout_s = 0.0;  // as estimated in the end
 };
 

@@ -58,8 +58,7 @@ std::optional<DriftClass> find_drift_class(const std::string& name) {
   return std::nullopt;
 }
 
-DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std::uint64_t seed,
-                   std::uint64_t part) {
+DriftedPoses drift(const std::vector<TruePose>& truth, const DriftClass& c, std::uint64_t seed, std::uint64_t part) {
   Random scale_random(seed, "odometry scale", part);
   Random random(seed, "odometry drift", part);
   DriftedPoses result;

@@ -7,7 +7,7 @@
 namespace rfmvo::simulate {
 namespace {
 
-constexpr std::size_t kTags = 8;  // unless told otherwise
+constexpr std::size_t kTags = 8;                                // unless told otherwise
 constexpr double kNear_m = 1.2, kFar_m = 2.2, kAcross_m = 0.8;  // tags in front of the path
 constexpr double kBeamCosine = 0.574;                           // 55 degrees: well inside the beam
 constexpr double kReadableShare = 0.4;                          // of the time, by both antennas

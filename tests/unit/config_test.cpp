@@ -1,10 +1,9 @@
-#include "edges/toml_files.hpp"
-
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "config/config_table.hpp"
+#include "edges/toml_files.hpp"
 #include "support/sample_events.hpp"
 
 namespace rfmvo {
@@ -57,8 +56,7 @@ TEST(ConfigToml, WritingAndReadingGivesTheSameBits) {
   config.lcm.url = "file:///tmp/a \"quoted\" \\ path";
   const auto back = parse_config(to_toml(config), "journal");
   ASSERT_TRUE(back.ok()) << back.error().text();
-  for (const ConfigRow& row : config_rows())
-    EXPECT_EQ(get_value(back.value(), row), get_value(config, row)) << row.key;
+  for (const ConfigRow& row : config_rows()) EXPECT_EQ(get_value(back.value(), row), get_value(config, row)) << row.key;
 }
 
 TEST(ConfigToml, KeysThatAreNotMentionedKeepTheBase) {
@@ -83,7 +81,8 @@ TEST(ConfigToml, AWrongTypeNamesKeyAndUnit) {
             "box.toml:2: joint.tag_range_max_m: expects a number in m, not the text \"300 cm\"");
   EXPECT_EQ(config_error("[paper]\nelements = 60.5\n"),
             "box.toml:2: paper.elements: expects a whole number, not the number 60.5");
-  EXPECT_EQ(config_error("[paper]\nfix_cycles = 1\n"), "box.toml:2: paper.fix_cycles: expects true or false, not the number 1");
+  EXPECT_EQ(config_error("[paper]\nfix_cycles = 1\n"),
+            "box.toml:2: paper.fix_cycles: expects true or false, not the number 1");
   EXPECT_EQ(config_error("[joint]\ntag_range_max_m = [1, 2]\n"),
             "box.toml:2: joint.tag_range_max_m: expects one value, not a list, table or date");
 }
@@ -143,9 +142,11 @@ TEST(CalibrationToml, WritingAndReadingGivesTheSameBits) {
 }
 
 TEST(CalibrationToml, UnknownKeysNameTheNearest) {
-  EXPECT_EQ(calibration_error(kCamera + "focal_px = 3\n"), "cart.toml:8: camera.focal_px: unknown key; did you mean fx_px?");
+  EXPECT_EQ(calibration_error(kCamera + "focal_px = 3\n"),
+            "cart.toml:8: camera.focal_px: unknown key; did you mean fx_px?");
   EXPECT_EQ(calibration_error(kCamera + "[mount]\n"), "cart.toml:8: mount: unknown key; did you mean mounting?");
-  EXPECT_EQ(calibration_error(kCamera + "[[antenna]]\nport=1\np_C_A_mm=[1,2,3]\n"), "cart.toml:8: antenna.p_C_A_m: is missing");
+  EXPECT_EQ(calibration_error(kCamera + "[[antenna]]\nport=1\np_C_A_mm=[1,2,3]\n"),
+            "cart.toml:8: antenna.p_C_A_m: is missing");
   EXPECT_EQ(calibration_error(kCamera + "[[antenna]]\nport=1\np_C_A_m=[1,2,3]\nlever_arm_sigma_mm=5\n"),
             "cart.toml:11: antenna.lever_arm_sigma_mm: unknown key; did you mean lever_arm_sigma_m?");
 }

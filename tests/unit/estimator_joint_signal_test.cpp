@@ -72,7 +72,8 @@ std::vector<TagPlaces> places_with_decoys(const World& w) {
   std::vector<TagPlaces> tags;
   for (std::size_t t = 0; t < w.problem.reads.size(); ++t) {
     const Eigen::Vector3d tag = w.truth.tags[t].p_W_X;
-    tags.push_back(phasors_at(w.problem.reads[t], w.truth, {tag + Eigen::Vector3d(0.1, 0.0, 0.3), tag, tag - Eigen::Vector3d(0.0, 0.1, 0.25)}));
+    tags.push_back(phasors_at(w.problem.reads[t], w.truth,
+                              {tag + Eigen::Vector3d(0.1, 0.0, 0.3), tag, tag - Eigen::Vector3d(0.0, 0.1, 0.25)}));
   }
   return tags;
 }
