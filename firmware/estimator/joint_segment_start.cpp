@@ -30,7 +30,13 @@ void JointSegment::estimate_electrical_lengths() {
   }
 }
 
+// Nothing is left of a solution that may have been wrong, least of all how noisy the reads seemed to it.
 std::vector<StartCandidate> JointSegment::search_starts() {
+  set_drift(1.0);
+  correlation_length_m_ = config_.joint.correlation_length_m;
+  shared_ = {};
+  for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
+  shared_.knots.resize(2);
   estimate_electrical_lengths();
   std::vector<Epc> all;
   for (const auto& [epc, tag] : tags_) all.push_back(epc);
@@ -46,6 +52,7 @@ std::vector<StartCandidate> JointSegment::search_starts() {
   knot_spacing_V_ = spacing_V;  // adopt() sets the spacing of the solution
   JointState state = state_for(all);
   state.knots.assign(path_.intervals(spacing_V).size() + 1, {});
+  for (TagState& tag : state.tags) tag.structured_sigma_rad = config_.joint.structured_sigma_rad;
   std::vector<StartCandidate> found = find_starts(problem_for(all, 1.0), state, beams_, options);
   std::erase_if(found, [](const StartCandidate& c) { return c.evidence < 0.0; });
   return found;
