@@ -17,18 +17,18 @@ constexpr double kMinUHF_hz = 840e6, kMaxUHF_hz = 960e6;  // EPC Gen2, all regio
 }  // namespace
 
 JointSegment::JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0)
-    : config_(config),
-      calibration_(calibration),
-      id_(id),
-      T_W_C0_(T_W_C0),
-      path_(T_W_C0.R),
-      correlation_length_m_(config.joint.correlation_length_m) {
-  set_drift(1.0);
-  for (const AntennaCalibration& antenna : calibration.antennas) {
-    shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
+    : config_(config), calibration_(calibration), id_(id), T_W_C0_(T_W_C0), path_(T_W_C0.R) {
+  for (const AntennaCalibration& antenna : calibration.antennas)
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
-  }
   beams_.range_max_m = config.joint.tag_range_max_m;
+  forget_solution();
+}
+
+void JointSegment::forget_solution() {
+  set_drift(1.0);
+  correlation_length_m_ = config_.joint.correlation_length_m;
+  shared_ = {};
+  for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
   shared_.knots.resize(2);
 }
 

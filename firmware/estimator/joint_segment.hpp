@@ -80,6 +80,7 @@ class JointSegment {
   bool start();
   void iterate(bool thorough);
   void consider_rivals();
+  void forget_solution();  // shared states and strengths as they are before any read
   void set_drift(double factor);
   void estimate_drift();
   [[nodiscard]] double total_evidence() const;
@@ -107,7 +108,7 @@ class JointSegment {
   bool started_ = false;
   double next_start_arc_V_ = 0.0;
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
-  double correlation_length_m_;
+  double correlation_length_m_ = 0.0;
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show
   double scale_walk_per_sqrt_m_ = 0.0, rotation_walk_rad_per_sqrt_m_ = 0.0, position_walk_m_per_sqrt_m_ = 0.0;
   double knot_spacing_V_ = 1.0;

@@ -32,11 +32,7 @@ void JointSegment::estimate_electrical_lengths() {
 
 // Nothing is left of a solution that may have been wrong, least of all how noisy the reads seemed to it.
 std::vector<StartCandidate> JointSegment::search_starts() {
-  set_drift(1.0);
-  correlation_length_m_ = config_.joint.correlation_length_m;
-  shared_ = {};
-  for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
-  shared_.knots.resize(2);
+  forget_solution();
   estimate_electrical_lengths();
   std::vector<Epc> all;
   for (const auto& [epc, tag] : tags_) all.push_back(epc);

@@ -114,6 +114,13 @@ NormalEquations build(const JointProblem& problem, const Chains& chains, const J
   return eq;
 }
 
+// S becomes the lower triangle of S - H_st H_tt^-1 H_ts.
+void eliminate(const Eigen::LLT<Eigen::Matrix4d>& tag_information, const Eigen::MatrixXd& H_shared,
+               Eigen::MatrixXd& S) {
+  const Eigen::MatrixXd L_inverse_H = tag_information.matrixL().solve(H_shared);
+  S.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse_H.transpose(), -1.0);
+}
+
 struct Step {
   Eigen::VectorXd shared;
   std::vector<Eigen::Vector4d> tags;
@@ -137,8 +144,7 @@ Step damped_step(const NormalEquations& eq, double lambda) {
     Eigen::VectorXd rhs = eq.g;
     for (const TagBlock& tag : eq.tags) {
       const Eigen::LLT<Eigen::Matrix4d> llt(damped(tag.H, lambda));
-      const Eigen::MatrixXd L_inverse_H = llt.matrixL().solve(tag.H_shared);
-      S.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse_H.transpose(), -1.0);
+      eliminate(llt, tag.H_shared, S);
       rhs.noalias() -= tag.H_shared.transpose() * llt.solve(tag.g);
     }
     step.shared = S.selfadjointView<Eigen::Lower>().ldlt().solve(rhs);
@@ -254,8 +260,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
     const Eigen::LLT<Eigen::Matrix4d> llt(eq.tags[t].H);
     gain[t] = llt.solve(eq.tags[t].H_shared);
-    const Eigen::MatrixXd L_inverse_H = llt.matrixL().solve(eq.tags[t].H_shared);
-    S.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse_H.transpose(), -1.0);
+    eliminate(llt, eq.tags[t].H_shared, S);
   }
   JointCovariance c;
   c.layout = eq.layout;
@@ -289,9 +294,7 @@ double log_marginal_likelihood(const JointProblem& problem, const JointState& st
   Eigen::MatrixXd S = eq.H;
   double log_determinant = 0.0;
   for (const TagBlock& tag : eq.tags) {
-    const Eigen::LLT<Eigen::Matrix4d> llt(tag.H);
-    const Eigen::MatrixXd L_inverse_H = llt.matrixL().solve(tag.H_shared);
-    S.selfadjointView<Eigen::Lower>().rankUpdate(L_inverse_H.transpose(), -1.0);
+    eliminate(Eigen::LLT<Eigen::Matrix4d>(tag.H), tag.H_shared, S);
     log_determinant += std::log(tag.H.determinant());
   }
   const Eigen::MatrixXd whole = S.selfadjointView<Eigen::Lower>();
