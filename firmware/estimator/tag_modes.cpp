@@ -92,6 +92,17 @@ PossiblePlaces search_places(const std::vector<JointRead>& all, const JointState
   return found;
 }
 
+// Where all ports together agree: the lobes of the whole aperture, which the incoherent spectrum does not show.
+std::vector<Eigen::Vector3d> coherent_places(const std::vector<SpectrumRead>& reads, const BeamModel& beams) {
+  constexpr double kFinest_m = 0.06, kWidest_m = 0.25;
+  constexpr int kPeaks = 32;
+  std::vector<Eigen::Vector3d> places;
+  for (const SpectrumPeak& peak : search_near_field(
+           reads, {.cell_m = suitable_cell(reads, kFinest_m, kWidest_m), .range_max_m = beams.range_max_m, .max_peaks = kPeaks}))
+    places.push_back(peak.p_W_X);
+  return places;
+}
+
 std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
                                 const BeamModel& beams, const std::vector<Eigen::Vector3d>& places, std::size_t count) {
   constexpr std::size_t kReads = 64;
@@ -101,7 +112,7 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
   if (ranked.size() > count) ranked.resize(count);
-  std::vector<Eigen::Vector3d> best;
+  std::vector<Eigen::Vector3d> best = coherent_places(reads, beams);
   for (const SpectrumPeak& peak : ranked) best.push_back(peak.p_W_X);
   return refine_all(problem.reads[index], problem, state, state.tags[index], beams, best);
 }
