@@ -23,6 +23,9 @@ struct Calibration {
   // 1 sigma per axis, common to all lever arms: where the camera's projection centre is in the frame that the
   // antennas were measured in. Antennas are easily measured against each other, a lens's centre is not.
   double camera_sigma_m = 0.0;
+  // 1 sigma per axis: how far the camera's axes may be turned against the frame that its path and the antennas
+  // are in. Turns every position relative to the camera, whatever the phases say.
+  double camera_rotation_sigma_rad = 0.0;
   std::vector<AntennaCalibration> antennas;
 };
 

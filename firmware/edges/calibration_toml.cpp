@@ -145,16 +145,21 @@ Result<CameraModel> camera_of(const toml::table& table, const std::string& where
   return c;
 }
 
-Result<Rigid3> mounting_of(const toml::table& table, const std::string& where, double& camera_sigma_m) {
+// Writes T_B_C and how well it is known.
+Status read_mounting(const toml::table& table, const std::string& where, Calibration& calibration) {
   Section s(table, "mounting", where);
   const Rigid3 standard = Calibration{}.T_B_C;
   const auto& q = standard.R;
   const auto t = s.numbers<3>("translation_m", "m", kMaxArm_m, {standard.t.x(), standard.t.y(), standard.t.z()});
   const auto r = s.unit_vector<4>("quaternion_wxyz", {q.w(), q.x(), q.y(), q.z()});
-  camera_sigma_m = s.number("camera_sigma_m", "m", 0, kMaxArm_m, camera_sigma_m);
+  calibration.camera_sigma_m = s.number("camera_sigma_m", "m", 0, kMaxArm_m, calibration.camera_sigma_m);
+  constexpr double kMaxTurn_rad = 0.5;
+  calibration.camera_rotation_sigma_rad =
+      s.number("camera_rotation_sigma_rad", "rad", 0, kMaxTurn_rad, calibration.camera_rotation_sigma_rad);
   s.reject_unknown();
   if (s.error()) return *s.error();
-  return Rigid3{Eigen::Quaterniond(r[0], r[1], r[2], r[3]), Eigen::Vector3d(t[0], t[1], t[2])};
+  calibration.T_B_C = {Eigen::Quaterniond(r[0], r[1], r[2], r[3]), Eigen::Vector3d(t[0], t[1], t[2])};
+  return Done{};
 }
 
 Result<AntennaCalibration> antenna_of(const toml::table& table, const std::string& where) {
@@ -216,9 +221,7 @@ Result<Calibration> parse_calibration(std::string_view toml, const std::string& 
       if (!camera) return camera.error();
       calibration.camera = camera.value();
     } else if (name == "mounting" && table != nullptr) {
-      auto mounting = mounting_of(*table, where, calibration.camera_sigma_m);
-      if (!mounting) return mounting.error();
-      calibration.T_B_C = mounting.value();
+      if (const Status mounting = read_mounting(*table, where, calibration); !mounting) return mounting.error();
     } else {
       const Error error = unknown_key(name.str(), kSections);
       return Error{error.code, error.text(), place(where, node)};
@@ -247,6 +250,7 @@ std::string to_toml(const Calibration& calibration) {
   out += "translation_m = " + list_of(calibration.T_B_C.t) + "\n";
   out += "quaternion_wxyz = " + list_of({q.w(), q.x(), q.y(), q.z()}) + "\n";
   out += "camera_sigma_m = " + text_of(calibration.camera_sigma_m) + "\n";
+  out += "camera_rotation_sigma_rad = " + text_of(calibration.camera_rotation_sigma_rad) + "\n";
   for (const AntennaCalibration& a : calibration.antennas) {
     out += "\n[[antenna]]\nport = " + std::to_string(a.port) + "\n";
     out += "p_C_A_m = " + list_of(a.p_C_A_m) + "\n";

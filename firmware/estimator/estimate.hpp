@@ -15,8 +15,9 @@
 
 namespace rfmvo {
 
-// Ambiguity is not covariance: a covariance describes one hypothesis, the status says whether
-// there is only one.
+// Ambiguity is not covariance: the covariance of a hypothesis describes that one, the status says whether
+// there is only one. Where there are more (kMirror), the covariance of the tag itself is the second moment of
+// all of them about the published position, so that who ignores the status is not misled.
 enum class TagStatus : std::int8_t {
   kConverged = 0,
   kNoScale = 1,       // the metric scale is not observable yet

@@ -49,16 +49,20 @@ Eigen::Matrix3d camera_relative_covariance(const JointSegment& segment, const Se
   return R_C_W * in_W * R_C_W.transpose();
 }
 
-// Between the odometry's path and its camera's orientation, 1 sigma per axis: the phases see the path,
-// and a rotation about the line through the antennas not at all. Measured on a real hand-held sequence:
-// 6.3, 3.6 and 0.6 degrees (docs/accuracy.md). Rendered frames show far less; one number must serve both
-// until the odometry tells its own.
-constexpr double kMisalignmentSigma_rad = 0.07;
+// What a rotation of unknown axis by sigma does to a point at r: sigma^2 (|r|^2 I - r r^T). The phases see the path;
+// the camera's orientation on it is the odometry's and the mounting's.
+Eigen::Matrix3d rotation_covariance(const Eigen::Vector3d& r, double sigma_rad) {
+  return sigma_rad * sigma_rad * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+}
 
-// What a small rotation of unknown axis does to a point at r: sigma^2 (|r|^2 I - r r^T).
-Eigen::Matrix3d misalignment_covariance(const Eigen::Vector3d& r) {
-  const double power = kMisalignmentSigma_rad * kMisalignmentSigma_rad;
-  return power * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+// Second moment of a tag's other modes about the heaviest: what its covariance lacks while they are open.
+Eigen::Matrix3d spread_of_modes(const SegmentTag& tag) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const TagMode& mode : tag.modes) {
+    const Eigen::Vector3d away = mode.tag.p_W_X - tag.state.p_W_X;
+    spread += mode.weight * away * away.transpose();
+  }
+  return spread;
 }
 
 struct Accuracy {
@@ -91,19 +95,23 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const E
   return a;
 }
 
+bool ambiguous(const SegmentTag& tag) {
+  constexpr double kSecondModeMatters = 0.02;
+  return tag.modes.size() > 1 && 1.0 - tag.modes[0].weight > kSecondModeMatters;
+}
+
 TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Matrix3d& covariance_m2,
                     DeviceTime now, const JointConfig& config) {
   if (!segment.started() || !tag.placed) return tag.placed ? TagStatus::kNoScale : TagStatus::kTooFewReads;
   if (!segment.scale_observable()) return TagStatus::kNoScale;
-  constexpr double kSecondModeMatters = 0.02;
-  if (tag.modes.size() > 1 && 1.0 - tag.modes[0].weight > kSecondModeMatters) return TagStatus::kMirror;
+  if (ambiguous(tag)) return TagStatus::kMirror;
   if ((now - tag.last_read).seconds() > config.stale_after_s) return TagStatus::kStale;
   const double sigma_m = std::sqrt(covariance_m2.trace());
   return sigma_m > config.located_sigma_max_m ? TagStatus::kWeakGeometry : TagStatus::kConverged;
 }
 
 TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentTag& tag, DeviceTime now,
-                     const JointConfig& config) {
+                     double camera_rotation_sigma_rad, const JointConfig& config) {
   TagEstimate e;
   e.time = now;
   e.epc = epc;
@@ -122,8 +130,9 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   const Rigid3 T_W_C = segment.T_W_C(closest.pose);
   e.closest_approach = closest.pose.time;
   e.p_C_X_m = T_W_C.inverse() * p;
-  e.covariance_C_m2 = camera_relative_covariance(segment, tag, closest.pose, p) + misalignment_covariance(e.p_C_X_m);
-  e.covariance_m2 += misalignment_covariance(p - T_W_C.t);
+  e.covariance_C_m2 = camera_relative_covariance(segment, tag, closest.pose, p) +
+                      rotation_covariance(e.p_C_X_m, camera_rotation_sigma_rad);
+  e.covariance_m2 += rotation_covariance(p - T_W_C.t, camera_rotation_sigma_rad);
   const Accuracy accuracy = accuracy_of(segment, tag, p, config.correlation_length_m);
   e.hdop = accuracy.hdop;
   e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
@@ -137,6 +146,11 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
                             first ? e.covariance_m2 : Eigen::Matrix3d(mode.covariance.topLeftCorner<3, 3>()),
                             mode.weight});
   }
+  if (!ambiguous(tag)) return e;
+  // Who looks at the covariance alone must not take an undecided position for a good one.
+  const Eigen::Matrix3d spread = spread_of_modes(tag), R_C_W = T_W_C.R.conjugate().toRotationMatrix();
+  e.covariance_m2 += spread;
+  e.covariance_C_m2 += R_C_W * spread * R_C_W.transpose();
   return e;
 }
 
@@ -199,7 +213,7 @@ void JointEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& 
   for (const JointSegment& s : segments) {
     revision += s.revision();
     for (const auto& [epc, tag] : s.tags()) {
-      const TagEstimate e = describe(s, epc, tag, now, impl_->config.joint);
+      const TagEstimate e = describe(s, epc, tag, now, impl_->calibration.camera_rotation_sigma_rad, impl_->config.joint);
       const auto place = best.find(epc);
       if (place == best.end() || sigma(e) < sigma(place->second)) best[epc] = e;
     }

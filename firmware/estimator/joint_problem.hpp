@@ -67,6 +67,9 @@ struct JointPriors {
 
 struct JointProblem {
   std::vector<std::vector<JointRead>> reads;  // per tag; grouped by port, in time order within a port
+  // How much of each entry of `reads` counts; empty: all of it. A tag whose position is undecided has one entry
+  // per mode, with the probability of the mode (expectation maximisation).
+  std::vector<double> share;
   std::vector<KnotInterval> intervals;        // knots - 1
   JointPriors priors;
   double reference_scale_m =
@@ -75,6 +78,10 @@ struct JointProblem {
   double flip_probability = 0.003;    // of a pi flip
   double outlier_probability = 0.01;  // of a phase that tells nothing
 };
+
+[[nodiscard]] inline double share_of(const JointProblem& problem, std::size_t tag) {
+  return problem.share.empty() ? 1.0 : problem.share[tag];
+}
 
 [[nodiscard]] ReadStates states_at(const JointRead& read, const JointState& state, const TagState& tag);
 

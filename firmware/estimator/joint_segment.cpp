@@ -121,10 +121,37 @@ JointState JointSegment::state_for(const std::vector<Epc>& epcs) const {
   return state;
 }
 
-void JointSegment::keep(const std::vector<Epc>& epcs, const JointState& state) {
+std::vector<Candidate> JointSegment::candidates(double least_share) const {
+  std::vector<Candidate> some;
+  for (const auto& [epc, tag] : tags_)
+    for (std::size_t m = 0; m < tag.modes.size(); ++m)
+      if (m == 0 || tag.modes[m].weight >= least_share) some.push_back({epc, m, tag.modes[m].weight});
+  return some;
+}
+
+JointProblem JointSegment::problem_for(const std::vector<Candidate>& some) const {
+  std::vector<Epc> epcs;
+  for (const Candidate& c : some) epcs.push_back(c.epc);
+  JointProblem problem = problem_for(epcs, std::exp(shared_.log_scale));
+  for (const Candidate& c : some) problem.share.push_back(c.share);
+  return problem;
+}
+
+JointState JointSegment::state_for(const std::vector<Candidate>& some) const {
+  JointState state = shared_;
+  state.tags.clear();
+  for (const Candidate& c : some) state.tags.push_back(tags_.at(c.epc).modes[c.mode].tag);
+  return state;
+}
+
+void JointSegment::keep(const std::vector<Candidate>& some, const JointState& state) {
   shared_ = state;
   shared_.tags.clear();
-  for (std::size_t t = 0; t < epcs.size(); ++t) tags_.at(epcs[t]).state = state.tags[t];
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    SegmentTag& tag = tags_.at(some[i].epc);
+    tag.modes[some[i].mode].tag = state.tags[i];
+    if (some[i].mode == 0) tag.state = state.tags[i];
+  }
 }
 
 // New knots start where the last one left: same drift, same correction carried on.

@@ -31,12 +31,25 @@ struct SegmentTag {
   TagState state;
   std::vector<TagMode> modes;      // best first
   std::size_t reads_at_modes = 0;  // when they were looked for
+  struct Part {
+    TagState tag;
+    double share = 1.0;
+  };
+  std::vector<Part> parts;  // as which it took part in the newest solution
   PossiblePlaces places;
   std::size_t reads_at_places = 0;  // when they were searched
   bool placed = false;              // state holds a position
-  bool joined = false;              // took part in the joint solution
+  [[nodiscard]] bool unique() const { return placed && !modes.empty() && modes[0].weight >= kUniqueWeight; }
+  static constexpr double kUniqueWeight = 0.95;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   Eigen::MatrixXd shared_covariance;  // 4 x shared states
+};
+
+// One mode of a tag as an entry of the joint problem, and how much it counts there.
+struct Candidate {
+  Epc epc;
+  std::size_t mode = 0;
+  double share = 1.0;
 };
 
 class JointSegment {
@@ -73,7 +86,11 @@ class JointSegment {
   [[nodiscard]] std::optional<int> port_index(std::uint8_t port) const;
   [[nodiscard]] JointProblem problem_for(const std::vector<Epc>& epcs, double reference_scale_m) const;
   [[nodiscard]] JointState state_for(const std::vector<Epc>& epcs) const;
-  void keep(const std::vector<Epc>& epcs, const JointState& state);
+  // Modes that hold at least this share of their tag.
+  [[nodiscard]] std::vector<Candidate> candidates(double least_share) const;
+  [[nodiscard]] JointProblem problem_for(const std::vector<Candidate>& some) const;  // at the scale as it is
+  [[nodiscard]] JointState state_for(const std::vector<Candidate>& some) const;
+  void keep(const std::vector<Candidate>& some, const JointState& state);
   void resize_knots();
   [[nodiscard]] std::vector<StartCandidate> search_starts();
   void adopt(const StartCandidate& candidate);
@@ -91,8 +108,8 @@ class JointSegment {
     return {static_cast<int>(shared_.ports.size()), static_cast<int>(shared_.knots.size())};
   }
   void refine(int rounds);
+  void estimate_noise(const std::vector<Candidate>& some, bool length, JointProblem& problem, JointState& state);
   void compute_covariance();
-  [[nodiscard]] std::vector<Epc> joined_tags() const;
   void estimate_electrical_lengths();
 
   Config config_;

@@ -24,8 +24,6 @@ void JointSegment::set_drift(double factor) {
 
 // The factor that the reads of the joined tags favour, up to one step from where it stands.
 void JointSegment::estimate_drift() {
-  const std::vector<Epc> epcs = joined_tags();
-  if (epcs.empty()) return;
   const JointSegment before = *this;
   double best = 0.0;
   std::optional<JointSegment> chosen;
@@ -34,8 +32,7 @@ void JointSegment::estimate_drift() {
     JointSegment trial = before;
     trial.set_drift(factor);
     if (factor != before.drift_factor_) trial.refine(1);
-    const double likelihood =
-        log_marginal_likelihood(trial.problem_for(epcs, std::exp(trial.shared_.log_scale)), trial.state_for(epcs));
+    const double likelihood = trial.total_evidence();
     if (!chosen || likelihood > best) {
       best = likelihood;
       chosen = trial;

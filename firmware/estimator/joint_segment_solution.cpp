@@ -10,27 +10,16 @@
 namespace rfmvo {
 namespace {
 
-constexpr double kUniqueWeight = 0.95;  // of the best mode of a tag that may shape the path
+constexpr double kLeastShare = 0.02;  // of a mode that takes part in the solution
 
 }  // namespace
 
 double JointSegment::total_evidence() const {
-  std::vector<Epc> placed;
-  for (const auto& [epc, tag] : tags_)
-    if (tag.placed && tag.reads >= kMinReads) placed.push_back(epc);
-  if (placed.empty()) return 0.0;
-  return evidence(problem_for(placed, std::exp(shared_.log_scale)), state_for(placed));
-}
-
-std::vector<Epc> JointSegment::joined_tags() const {
-  std::vector<Epc> epcs;
-  for (const auto& [epc, tag] : tags_)
-    if (tag.placed && !tag.modes.empty() && tag.modes[0].weight >= kUniqueWeight) epcs.push_back(epc);
-  // While nothing is unique, all that is placed must do.
-  if (epcs.empty())
-    for (const auto& [epc, tag] : tags_)
-      if (tag.placed) epcs.push_back(epc);
-  return epcs;
+  const std::vector<Candidate> some = candidates(kLeastShare);
+  if (some.empty()) return 0.0;
+  double signal = 0.0;
+  for (const Candidate& c : some) signal += c.share * tags_.at(c.epc).modes[c.mode].signal_cost;
+  return log_marginal_likelihood(problem_for(some), state_for(some)) - signal;
 }
 
 // Modes of tags that are new, ambiguous, or (kAll) of all, given the path as it is.
@@ -40,12 +29,11 @@ void JointSegment::place(Effort effort) {
     std::size_t reads = 0;
     for (const auto& chain : tag.chains) reads += chain.size();
     if (reads < kMinReads) continue;
-    const bool unique = tag.placed && !tag.modes.empty() && tag.modes[0].weight >= kUniqueWeight;
     // Looked at again when a third more reads have come.
-    if (effort == Effort::kNew && (unique || 3 * reads < 4 * tag.reads_at_modes)) continue;
+    if (effort == Effort::kNew && (tag.unique() || 3 * reads < 4 * tag.reads_at_modes)) continue;
     tag.reads_at_modes = reads;
-    const JointProblem problem = problem_for({epc}, scale);
-    const JointState state = state_for({epc});
+    const JointProblem problem = problem_for(std::vector{epc}, scale);
+    const JointState state = state_for(std::vector{epc});
     if (effort == Effort::kRefresh && !tag.modes.empty()) {
       tag.modes = refresh_modes(problem, 0, state, beams_, tag.modes);
     } else {
@@ -60,66 +48,96 @@ void JointSegment::place(Effort effort) {
       tag.modes = find_modes(problem, 0, state, beams_, places, kModes);
     }
     tag.placed = !tag.modes.empty();
+    if (tag.placed) tag.state = tag.modes[0].tag;
   }
 }
 
-// Each placed tag at the mode that suits the reads of all the others best.
+// The modes of each tag weighed by how they suit the reads of all the others.
 void JointSegment::select() {
+  if (covariance_.information.rows() != layout().size()) return;
   const double scale = std::exp(shared_.log_scale);
   for (auto& [epc, tag] : tags_) {
-    if (tag.modes.empty()) continue;
-    const JointProblem one = problem_for({epc}, scale);
-    const JointState state = state_for({epc});
-    if (covariance_.information.rows() == layout().size()) {
-      const TagCoupling own = tag_coupling(one, state);
-      select_modes(one, state, without(covariance_.information, tag.joined ? &own : nullptr), tag.modes);
+    if (tag.modes.size() < 2) continue;
+    const JointProblem one = problem_for(std::vector{epc}, scale);
+    const JointState state = state_for(std::vector{epc});
+    OtherReads others{covariance_.information, Eigen::VectorXd::Zero(layout().size())};
+    JointState at = state;
+    for (const SegmentTag::Part& part : tag.parts) {
+      at.tags = {part.tag};
+      take_out(tag_coupling(one, at), part.share, others);
     }
+    select_modes(one, state, others, tag.modes);
     tag.state = tag.modes[0].tag;
-    tag.covariance = tag.modes[0].covariance;
   }
 }
 
-void JointSegment::refine(int rounds) {
-  const std::vector<Epc> epcs = joined_tags();
-  if (epcs.empty()) return;
-  JointProblem problem = problem_for(epcs, std::exp(shared_.log_scale));
-  JointState state = state_for(epcs);
+// Strengths from the tags whose position is decided; the others are judged with what these show.
+void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool length, JointProblem& problem,
+                                  JointState& state) {
   const StrengthOptions strength{.floor_rad = config_.joint.structured_sigma_floor_rad,
                                  .prior_rad = config_.joint.structured_sigma_rad};
+  std::vector<Candidate> decided = some;
+  std::erase_if(decided, [](const Candidate& c) { return c.share < SegmentTag::kUniqueWeight; });
+  if (decided.empty()) {
+    decided = some;
+    std::erase_if(decided, [](const Candidate& c) { return c.mode != 0; });
+  }
+  for (Candidate& c : decided) c.share = 1.0;
+  JointProblem known = problem_for(decided);
+  JointState of_known = state;
+  of_known.tags.clear();
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < some.size(); ++i)
+    if (k < decided.size() && some[i].epc == decided[k].epc && some[i].mode == decided[k].mode) {
+      of_known.tags.push_back(state.tags[i]);
+      ++k;
+    }
+  known.correlation_length_m = problem.correlation_length_m;
+  estimate_structured_strength(known, strength, of_known);
+  if (length)
+    correlation_length_m_ = problem.correlation_length_m =
+        estimate_correlation_length(known, of_known, config_.joint.correlation_length_m);
+  double typical = 0.0;
+  for (const TagState& t : of_known.tags)
+    typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());
+  for (auto& [epc, tag] : tags_) {
+    const auto found = std::find_if(decided.begin(), decided.end(), [&](const Candidate& c) { return c.epc == epc; });
+    const double sigma = found == decided.end()
+                             ? typical
+                             : of_known.tags[static_cast<std::size_t>(found - decided.begin())].structured_sigma_rad;
+    tag.state.structured_sigma_rad = sigma;
+    for (TagMode& mode : tag.modes) mode.tag.structured_sigma_rad = sigma;
+  }
+  for (std::size_t i = 0; i < some.size(); ++i)
+    state.tags[i].structured_sigma_rad = tags_.at(some[i].epc).state.structured_sigma_rad;
+}
+
+// One step of expectation maximisation: the path and all positions, each mode counting as much as it is likely.
+void JointSegment::refine(int rounds) {
+  const std::vector<Candidate> some = candidates(kLeastShare);
+  if (some.empty()) return;
+  JointProblem problem = problem_for(some);
+  JointState state = state_for(some);
   for (int round = 0; round < rounds; ++round) {
     (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
-    estimate_structured_strength(problem, strength, state);
-    if (rounds > 1)
-      correlation_length_m_ = problem.correlation_length_m =
-          estimate_correlation_length(problem, state, config_.joint.correlation_length_m);
+    estimate_noise(some, rounds > 1, problem, state);
   }
   (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
-  for (auto& [epc, tag] : tags_) tag.joined = false;
-  keep(epcs, state);
-  // Tags that were not joined are judged with the strength that the joined ones show.
-  double typical = 0.0;
-  for (const TagState& t : state.tags) typical += t.structured_sigma_rad / static_cast<double>(state.tags.size());
-  for (const Epc& epc : epcs) tags_.at(epc).joined = true;
-  for (auto& [epc, tag] : tags_)
-    if (!tag.joined) tag.state.structured_sigma_rad = typical;
+  keep(some, state);
 }
 
 void JointSegment::compute_covariance() {
-  const std::vector<Epc> joined = joined_tags();
-  if (joined.empty()) return;
-  covariance_ = covariance(problem_for(joined, std::exp(shared_.log_scale)), state_for(joined));
-  for (std::size_t t = 0; t < joined.size(); ++t) {
-    SegmentTag& tag = tags_.at(joined[t]);
-    tag.covariance = covariance_.tag[t];
-    tag.shared_covariance = covariance_.tag_shared[t];
-  }
-  // A tag that stood aside: its own reads given the path, and the path's uncertainty through them.
-  for (auto& [epc, tag] : tags_) {
-    if (!tag.placed || tag.joined) continue;
-    const TagCoupling c = tag_coupling(problem_for({epc}, std::exp(shared_.log_scale)), state_for({epc}));
-    const Eigen::MatrixXd gain = c.own_covariance * c.H_shared;
-    tag.shared_covariance = -gain * covariance_.shared;
-    tag.covariance = c.own_covariance - tag.shared_covariance * gain.transpose();
+  const std::vector<Candidate> some = candidates(kLeastShare);
+  if (some.empty()) return;
+  covariance_ = covariance(problem_for(some), state_for(some));
+  for (auto& [epc, tag] : tags_) tag.parts.clear();
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    SegmentTag& tag = tags_.at(some[i].epc);
+    tag.parts.push_back({tag.modes[some[i].mode].tag, some[i].share});
+    tag.modes[some[i].mode].covariance = covariance_.tag[i];
+    if (some[i].mode > 0) continue;
+    tag.covariance = covariance_.tag[i];
+    tag.shared_covariance = covariance_.tag_shared[i];
   }
 }
 

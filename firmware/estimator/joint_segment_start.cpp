@@ -66,7 +66,6 @@ void JointSegment::adopt(const StartCandidate& candidate) {
     }
     tag.modes.clear();
     tag.reads_at_modes = 0;
-    tag.joined = false;
     ++t;
   }
   shared_ = candidate.state;

@@ -49,12 +49,12 @@ int gather(const WhitenedRow& row, const SharedLayout& layout, std::array<int, 6
   return n;
 }
 
-void accumulate(const WhitenedTag& whitened, const SharedLayout& layout, bool shared_fixed, NormalEquations& eq,
-                TagBlock& block) {
+void accumulate(const WhitenedTag& whitened, double share, const SharedLayout& layout, bool shared_fixed,
+                NormalEquations& eq, TagBlock& block) {
   std::array<int, 64> columns{};
   Eigen::VectorXd values(64);
   for (const WhitenedRow& row : whitened.rows) {
-    const double w = row.weight;
+    const double w = share * row.weight;
     block.H.noalias() += w * row.tag * row.tag.transpose();
     block.g.noalias() += w * row.residual * row.tag;
     if (shared_fixed) continue;
@@ -69,10 +69,10 @@ void accumulate(const WhitenedTag& whitened, const SharedLayout& layout, bool sh
   }
 }
 
-void add_tag_prior(TagBlock& block) {
+void add_tag_prior(double share, TagBlock& block) {
   // Towards the current value: a damping that only matters for directions no read sees.
-  block.H.diagonal().head<3>().array() += 1.0 / (kTagPriorSigma_m * kTagPriorSigma_m);
-  block.H(3, 3) += 1.0 / (kTagOffsetPriorSigma_rad * kTagOffsetPriorSigma_rad);
+  block.H.diagonal().head<3>().array() += share / (kTagPriorSigma_m * kTagPriorSigma_m);
+  block.H(3, 3) += share / (kTagOffsetPriorSigma_rad * kTagOffsetPriorSigma_rad);
 }
 
 using Chains = std::vector<ChainConditioning>;  // per tag
@@ -97,10 +97,11 @@ NormalEquations build(const JointProblem& problem, const Chains& chains, const J
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
     whiten_rows(problem.reads[t], problem, chains[t], Derivatives::kAll, whitened);
-    eq.cost += whitened.cost + 0.5 * whitened.log_variance;
+    const double share = share_of(problem, t);
+    eq.cost += share * (whitened.cost + 0.5 * whitened.log_variance);
     eq.tags[t].H_shared = Eigen::MatrixXd::Zero(4, size);
-    accumulate(whitened, eq.layout, shared_fixed, eq, eq.tags[t]);
-    add_tag_prior(eq.tags[t]);
+    accumulate(whitened, share, eq.layout, shared_fixed, eq, eq.tags[t]);
+    add_tag_prior(share, eq.tags[t]);
   }
   if (!shared_fixed) {
     // Rows were gathered in mixed column order; fold everything into the lower triangle.
@@ -191,7 +192,7 @@ double cost_of(const JointProblem& problem, const Chains& chains, const JointSta
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kNone, whitened);
     whiten_rows(problem.reads[t], problem, chains[t], Derivatives::kNone, whitened);
-    cost += whitened.cost + 0.5 * whitened.log_variance;
+    cost += share_of(problem, t) * (whitened.cost + 0.5 * whitened.log_variance);
   }
   const SharedLayout layout{static_cast<int>(state.ports.size()), static_cast<int>(state.knots.size())};
   return cost + add_path_prior(problem, state, layout, nullptr, nullptr);
@@ -269,7 +270,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
   c.shared = (0.5 * (c.shared + c.shared.transpose())).eval();
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
     const Eigen::MatrixXd cross = gain[t] * c.shared;
-    const Eigen::Matrix4d own = eq.tags[t].H.llt().solve(Eigen::Matrix4d::Identity());
+    const Eigen::Matrix4d own = share_of(problem, t) * eq.tags[t].H.llt().solve(Eigen::Matrix4d::Identity());
     c.tag.emplace_back(own + cross * gain[t].transpose());
     c.tag_shared.emplace_back(-cross);
   }
@@ -289,17 +290,35 @@ TagCoupling tag_coupling(const JointProblem& problem, const JointState& state) {
   return c;
 }
 
+// ln det of the prior's information, with a scale known to a factor of e: the volume that the states may fill
+// before any read.
+double log_prior_determinant(const JointProblem& problem, const JointState& state, const SharedLayout& layout) {
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(layout.size());
+  (void)add_path_prior(problem, state, layout, &H, &g);
+  H(SharedLayout::kLogScale, SharedLayout::kLogScale) += 1.0;
+  const Eigen::MatrixXd whole = H.selfadjointView<Eigen::Lower>();
+  return whole.ldlt().vectorD().array().abs().log().sum();
+}
+
 double log_marginal_likelihood(const JointProblem& problem, const JointState& state) {
   const NormalEquations eq = build(problem, chains_of(problem, state), state, false);
+  // Of one read a Gaussian's sqrt(2 pi) against 2 pi of a uniform phase; of a tag Laplace's (2 pi)^2 against the
+  // offset's 2 pi and the space that a tag may be in.
+  constexpr double kSpace_m3 = 100.0;
+  const double per_read = 0.5 * std::log(kTwoPi), per_tag = std::log(kTwoPi / kSpace_m3);
   Eigen::MatrixXd S = eq.H;
-  double log_determinant = 0.0;
-  for (const TagBlock& tag : eq.tags) {
+  double likelihood = 0.5 * log_prior_determinant(problem, state, eq.layout) - eq.cost;
+  for (std::size_t t = 0; t < eq.tags.size(); ++t) {
+    const TagBlock& tag = eq.tags[t];
     eliminate(Eigen::LLT<Eigen::Matrix4d>(tag.H), tag.H_shared, S);
-    log_determinant += std::log(tag.H.determinant());
+    const double share = share_of(problem, t);
+    const double log_determinant = std::log(tag.H.determinant()) - 4.0 * std::log(share);
+    likelihood += share * (per_read * static_cast<double>(problem.reads[t].size()) + per_tag - 0.5 * log_determinant -
+                           std::log(share));
   }
   const Eigen::MatrixXd whole = S.selfadjointView<Eigen::Lower>();
-  log_determinant += whole.ldlt().vectorD().array().abs().log().sum();
-  return -eq.cost - 0.5 * log_determinant - log_drift_sigmas(problem);
+  return likelihood - 0.5 * whole.ldlt().vectorD().array().abs().log().sum();
 }
 
 }  // namespace rfmvo

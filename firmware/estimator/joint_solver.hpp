@@ -60,8 +60,9 @@ struct TagCoupling {
 // believable; the difference between two states of the same reads is their ln likelihood ratio.
 [[nodiscard]] double evidence(const JointProblem& problem, const JointState& state);
 
-// ln of the integral of the likelihood over all states about a solution (Laplace), up to a constant of
-// reads, tags and knots: what strengths of noise and drift are compared by.
+// ln of the integral of the likelihood over all states about a solution (Laplace) and, where a tag has several
+// entries, over its modes (the lower bound that expectation maximisation raises), against phases that tell
+// nothing. Starts, strengths of noise and of drift are compared by it.
 [[nodiscard]] double log_marginal_likelihood(const JointProblem& problem, const JointState& state);
 
 // Robust cost of everything at a state (what solve() minimises).

@@ -12,12 +12,9 @@ double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& ldlt) {
 
 }  // namespace
 
-OtherReads without(const Eigen::MatrixXd& information, const TagCoupling* own) {
-  OtherReads others{information, Eigen::VectorXd::Zero(information.rows())};
-  if (own == nullptr) return others;
-  others.information -= own->information;
-  others.gradient = -own->gradient;  // at a solution all gradients add up to zero
-  return others;
+void take_out(const TagCoupling& own, double share, OtherReads& others) {
+  others.information -= share * own.information;
+  others.gradient -= share * own.gradient;
 }
 
 void select_modes(const JointProblem& one, const JointState& shared, const OtherReads& others,

@@ -18,9 +18,9 @@ struct OtherReads {
   Eigen::VectorXd gradient;
 };
 
-// At a solution of `joined` (tags of `all`): `information` is JointCovariance's. A tag that took part is
-// taken out again; `own` is its coupling in the state in which it took part.
-[[nodiscard]] OtherReads without(const Eigen::MatrixXd& information, const TagCoupling* own);
+// Takes an entry of the joint problem out again: `own` is its coupling in the state in which it took part, with
+// this share. Starts from JointCovariance's information and no gradient: at a solution all gradients cancel.
+void take_out(const TagCoupling& own, double share, OtherReads& others);
 
 // Weighs the modes of the tag that `one` holds alone by their marginal likelihood (Laplace) and puts the heaviest
 // first; each covariance becomes that of (position, offset) with the shared states uncertain.

@@ -128,15 +128,6 @@ double add_lever_arm_prior(const JointPriors& priors, const JointState& state, c
 
 }  // namespace
 
-double log_drift_sigmas(const JointProblem& problem) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < problem.intervals.size(); ++k) {
-    const IntervalSigma sigma = interval_sigma(problem, k);
-    sum += std::log(sigma.drift) + 3.0 * std::log(sigma.turn) + 3.0 * std::log(sigma.position_m);
-  }
-  return sum;
-}
-
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g) {
   const JointPriors& priors = problem.priors;

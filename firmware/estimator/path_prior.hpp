@@ -17,8 +17,4 @@ namespace rfmvo {
 double add_path_prior(const JointProblem& problem, const JointState& state, const SharedLayout& layout,
                       Eigen::MatrixXd* H, Eigen::VectorXd* g);
 
-// ln of the product of the drift residuals' sigmas: the part of the prior's density that add_path_prior()
-// leaves out and that depends on how strongly the odometry drifts.
-[[nodiscard]] double log_drift_sigmas(const JointProblem& problem);
-
 }  // namespace rfmvo

@@ -27,7 +27,8 @@ struct Scene {
   std::vector<double> frame_times_s;    // since the run's epoch, increasing
   std::function<Rigid3(double)> T_S_C;  // camera pose at a time (s), continuous
   Calibration calibration;              // the true one
-  double frame_offset_sigma_m = 0.0;    // per axis: how far the camera of the images may be from that of the truth
+  // Per axis: how far the camera of the images may be from that of the truth, and turned against it.
+  double frame_offset_sigma_m = 0.0, frame_rotation_sigma_rad = 0.0;
   std::vector<SceneTag> tags;
   double structured_sigma_rad = 0.3;  // of the statistical radio link
   double capture_sigma = 1.0;         // spread of ln(chance to win a slot) between tags: makes gaps heavy-tailed

@@ -20,8 +20,10 @@ DeviceTime at(double t_s) { return kEpoch + Duration{std::llround(t_s * 1e6) * 1
 
 // The lever arms as a ruler finds them: off by what the calibration itself claims, 1 sigma. What the images'
 // own camera is off by comes on top, and is in the images already.
-Calibration nominal_of(Calibration calibration, double frame_offset_sigma_m, std::uint64_t seed) {
-  calibration.camera_sigma_m = frame_offset_sigma_m;
+Calibration nominal_of(const Scene& scene, std::uint64_t seed) {
+  Calibration calibration = scene.calibration;
+  calibration.camera_sigma_m = scene.frame_offset_sigma_m;
+  calibration.camera_rotation_sigma_rad = scene.frame_rotation_sigma_rad;
   Random random(seed, "lever arm errors");
   for (AntennaCalibration& antenna : calibration.antennas) {
     for (int i = 0; i < 3; ++i) antenna.p_C_A_m[i] += antenna.lever_arm_sigma_m * random.normal();
@@ -137,7 +139,7 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
     start.config.vision.k1_sigma = kRenderedK1Sigma;
     start.config.vision.readout_sigma_s = kRenderedReadoutSigma_s;
   }
-  start.calibration = nominal_of(scene.calibration, scene.frame_offset_sigma_m, options.seed);
+  start.calibration = nominal_of(scene, options.seed);
   if (Status s = sink(start); !s.ok()) return s.error();
   if (Status s = feed(scene, with_frames, gap, small_events(scene, options, drifted.poses), sink); !s.ok())
     return s.error();

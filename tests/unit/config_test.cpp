@@ -132,6 +132,7 @@ TEST(CalibrationToml, WritingAndReadingGivesTheSameBits) {
   EXPECT_EQ(b.T_B_C.R.coeffs(), c.T_B_C.R.coeffs());
   EXPECT_EQ(b.T_B_C.t, c.T_B_C.t);
   EXPECT_EQ(b.camera_sigma_m, c.camera_sigma_m);
+  EXPECT_EQ(b.camera_rotation_sigma_rad, c.camera_rotation_sigma_rad);
   ASSERT_EQ(b.antennas.size(), c.antennas.size());
   for (std::size_t i = 0; i < c.antennas.size(); ++i) {
     EXPECT_EQ(b.antennas[i].port, c.antennas[i].port);

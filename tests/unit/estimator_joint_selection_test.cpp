@@ -23,6 +23,12 @@ Solved solved_world(int tags) {
   return s;
 }
 
+OtherReads without(const Eigen::MatrixXd& information, const TagCoupling* own) {
+  OtherReads others{information, Eigen::VectorXd::Zero(information.rows())};
+  if (own != nullptr) take_out(*own, 1.0, others);
+  return others;
+}
+
 JointProblem alone(const JointProblem& problem, std::size_t t) {
   JointProblem one = problem;
   one.reads = {problem.reads[t]};
