@@ -32,13 +32,19 @@ Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, double le
   return n;
 }
 
-void condition(std::size_t i, const std::vector<JointRead>& reads, double sigma_rad, double length_m, Lean& n) {
+void condition(std::size_t i, const std::vector<JointRead>& reads, double sigma_rad, const StructuredShape& shape,
+               Lean& n) {
   const auto at = [&](std::size_t k) -> const JointRead& { return reads[k == 0 ? i : n.neighbour[k - 1]]; };
+  Eigen::Vector4d strength;
   for (std::size_t a = 0; a <= n.count; ++a) {
-    n.white_rad2[static_cast<Eigen::Index>(a)] = at(a).white_rad2;
+    const auto r = static_cast<Eigen::Index>(a);
+    n.white_rad2[r] = at(a).white_rad2;
+    strength[r] = relative_strength(at(a).fade_db, shape);
+    n.correlation(r, r) = strength[r] * strength[r];
     for (std::size_t b = 0; b < a; ++b) {
-      const auto r = static_cast<Eigen::Index>(a), c = static_cast<Eigen::Index>(b);
-      n.correlation(r, c) = n.correlation(c, r) = structured_correlation((at(a).p_W_A - at(b).p_W_A).norm(), length_m);
+      const auto c = static_cast<Eigen::Index>(b);
+      n.correlation(r, c) = n.correlation(c, r) =
+          strength[r] * strength[c] * structured_correlation((at(a).p_W_A - at(b).p_W_A).norm(), shape.length_m);
     }
   }
   n.given = condition_on_correlated(n.count, n.correlation, n.white_rad2, sigma_rad);
@@ -87,12 +93,13 @@ ReadStates states_at(const JointRead& read, const JointState& state, const TagSt
           .tag_offset_rad = tag.offset_rad};
 }
 
-ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad, double length_m) {
-  ChainConditioning c{{}, structured_sigma_rad, length_m};
+ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad,
+                                   const StructuredShape& shape) {
+  ChainConditioning c{{}, structured_sigma_rad, shape};
   c.reads.reserve(reads.size());
   for (std::size_t i = 0; i < reads.size(); ++i) {
-    c.reads.push_back(neighbours_of(i, reads, length_m, [](std::size_t) { return true; }));
-    condition(i, reads, structured_sigma_rad, length_m, c.reads.back());
+    c.reads.push_back(neighbours_of(i, reads, shape.length_m, [](std::size_t) { return true; }));
+    condition(i, reads, structured_sigma_rad, shape, c.reads.back());
   }
   return c;
 }
@@ -133,8 +140,8 @@ void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& proble
     Lean without_outliers;
     const auto usable = [&](std::size_t j) { return raws[j].usable; };
     if (!std::all_of(n->neighbour.begin(), n->neighbour.begin() + static_cast<std::ptrdiff_t>(n->count), usable)) {
-      without_outliers = neighbours_of(i, reads, conditioning.length_m, usable);
-      condition(i, reads, conditioning.structured_sigma_rad, conditioning.length_m, without_outliers);
+      without_outliers = neighbours_of(i, reads, conditioning.shape.length_m, usable);
+      condition(i, reads, conditioning.structured_sigma_rad, conditioning.shape, without_outliers);
       n = &without_outliers;
     }
     const Conditioning& c = n->given;
@@ -174,7 +181,7 @@ void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, co
             const TagState& tag, bool with_jacobian, WhitenedTag& out) {
   const Derivatives derivatives = with_jacobian ? Derivatives::kAll : Derivatives::kNone;
   predict_rows(reads, state, tag, derivatives, out);
-  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.correlation_length_m),
+  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.structured),
               derivatives, out);
 }
 

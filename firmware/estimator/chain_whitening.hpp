@@ -50,15 +50,16 @@ struct ChainConditioning {
   struct Read {
     std::array<std::size_t, Conditioning::kMaxNeighbours> neighbour{};
     std::size_t count = 0;
-    Eigen::Matrix4d correlation = Eigen::Matrix4d::Identity();  // of this read (0) and its neighbours
+    Eigen::Matrix4d correlation = Eigen::Matrix4d::Identity();  // of this read (0) and its neighbours, by strength
     Eigen::Vector4d white_rad2 = Eigen::Vector4d::Zero();
     Conditioning given;
   };
   std::vector<Read> reads;
-  double structured_sigma_rad = 0.0, length_m = 0.0;
+  double structured_sigma_rad = 0.0;
+  StructuredShape shape;
 };
 [[nodiscard]] ChainConditioning condition_chains(const std::vector<JointRead>& reads, double structured_sigma_rad,
-                                                 double length_m);
+                                                 const StructuredShape& shape);
 
 // The same chains, should the structured error be stronger or weaker.
 void set_strength(double structured_sigma_rad, ChainConditioning& conditioning);

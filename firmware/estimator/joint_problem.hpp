@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/phase_error_model.hpp"
 #include "estimator/phase_model.hpp"
 
 namespace rfmvo {
@@ -42,6 +43,7 @@ struct JointRead {
   double phase_rad = 0.0;                           // measured
   double white_rad2 = 0.0;                          // variance of the uncorrelated error
   double rssi_db = 0.0;                             // dBm
+  double fade_db = 0.0;                             // below the tag's strong reads
   Eigen::Vector3d p_W_A = Eigen::Vector3d::Zero();  // antenna at the reference scale: distances between reads
   int port = 0;                                     // index into ports
   int knot = 0;                                     // the read lies between knot and knot + 1,
@@ -74,7 +76,7 @@ struct JointProblem {
   JointPriors priors;
   double reference_scale_m =
       1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
-  double correlation_length_m = 0.058;
+  StructuredShape structured;         // of the phase error
   double flip_probability = 0.003;    // of a pi flip
   double outlier_probability = 0.01;  // of a phase that tells nothing
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/units.hpp"
 #include "estimator/phase_error_model.hpp"
@@ -12,7 +13,18 @@ namespace {
 
 constexpr std::size_t kMaxReadsPerChain = 120;            // more are thinned: neighbours tell nearly the same
 constexpr double kDecided = 6.0;                          // ln likelihood ratio between two scales
+constexpr double kStrongShare = 0.1;                      // of a tag's reads: those that count as strong
 constexpr double kMinUHF_hz = 840e6, kMaxUHF_hz = 960e6;  // EPC Gen2, all regions
+
+// Power that a tag's strong reads exceed, dBm.
+double strong_rssi_db(const SegmentTag& tag) {
+  std::vector<double> rssi_db;
+  for (const auto& chain : tag.chains)
+    for (const SegmentTag::Read& r : chain) rssi_db.push_back(r.read.rssi_db);
+  const auto rank = static_cast<std::ptrdiff_t>(kStrongShare * static_cast<double>(rssi_db.size()));
+  std::nth_element(rssi_db.begin(), rssi_db.begin() + rank, rssi_db.end(), std::greater<>());
+  return rssi_db[static_cast<std::size_t>(rank)];
+}
 
 }  // namespace
 
@@ -26,7 +38,7 @@ JointSegment::JointSegment(const Config& config, const Calibration& calibration,
 
 void JointSegment::forget_solution() {
   set_drift(1.0);
-  correlation_length_m_ = config_.joint.correlation_length_m;
+  structured_ = {.length_m = config_.joint.correlation_length_m};
   shared_ = {};
   for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
   shared_.knots.resize(2);
@@ -80,7 +92,7 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   JointProblem problem;
   problem.intervals = path_.intervals(knot_spacing_V_);
   problem.reference_scale_m = reference_scale_m;
-  problem.correlation_length_m = correlation_length_m_;
+  problem.structured = structured_;
   problem.flip_probability = config_.joint.flip_probability;
   problem.outlier_probability = config_.joint.outlier_probability;
   JointPriors& priors = problem.priors;
@@ -97,6 +109,7 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   }
   for (const Epc& epc : epcs) {
     std::vector<JointRead>& reads = problem.reads.emplace_back();
+    const double strong_db = strong_rssi_db(tags_.at(epc));
     for (const auto& chain : tags_.at(epc).chains) {
       const std::size_t count = std::min(chain.size(), kMaxReadsPerChain);
       for (std::size_t k = 0; k < count; ++k) {
@@ -105,6 +118,7 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
         const KnotPlace place = path_.place(source.arc_V, knot_spacing_V_);
         read.knot = std::min(place.knot, static_cast<int>(problem.intervals.size()) - 1);
         read.knot_fraction = place.fraction;
+        read.fade_db = std::max(0.0, strong_db - read.rssi_db);
         read.p_W_A = reference_scale_m * read.geometry.n_W +
                      read.geometry.R_W_C * calibration_.antennas[static_cast<std::size_t>(read.port)].p_C_A_m;
         reads.push_back(read);

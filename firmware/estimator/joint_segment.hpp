@@ -108,7 +108,7 @@ class JointSegment {
     return {static_cast<int>(shared_.ports.size()), static_cast<int>(shared_.knots.size())};
   }
   void refine(int rounds);
-  void estimate_noise(const std::vector<Candidate>& some, bool length, JointProblem& problem, JointState& state);
+  void estimate_noise(const std::vector<Candidate>& some, bool shape, JointProblem& problem, JointState& state);
   void compute_covariance();
   void estimate_electrical_lengths();
 
@@ -125,7 +125,7 @@ class JointSegment {
   bool started_ = false;
   double next_start_arc_V_ = 0.0;
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
-  double correlation_length_m_ = 0.0;
+  StructuredShape structured_;
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show
   double scale_walk_per_sqrt_m_ = 0.0, rotation_walk_rad_per_sqrt_m_ = 0.0, position_walk_m_per_sqrt_m_ = 0.0;
   double knot_spacing_V_ = 1.0;

@@ -72,7 +72,7 @@ void JointSegment::select() {
 }
 
 // Strengths from the tags whose position is decided; the others are judged with what these show.
-void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool length, JointProblem& problem,
+void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape, JointProblem& problem,
                                   JointState& state) {
   const StrengthOptions strength{.floor_rad = config_.joint.structured_sigma_floor_rad,
                                  .prior_rad = config_.joint.structured_sigma_rad};
@@ -92,11 +92,10 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool lengt
       of_known.tags.push_back(state.tags[i]);
       ++k;
     }
-  known.correlation_length_m = problem.correlation_length_m;
+  if (shape) structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
   estimate_structured_strength(known, strength, of_known);
-  if (length)
-    correlation_length_m_ = problem.correlation_length_m =
-        estimate_correlation_length(known, of_known, config_.joint.correlation_length_m);
+  if (shape) structured_.length_m = estimate_correlation_length(known, of_known, config_.joint.correlation_length_m);
+  problem.structured = structured_;
   double typical = 0.0;
   for (const TagState& t : of_known.tags)
     typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());

@@ -109,10 +109,10 @@ void JointSegment::consider_rivals() {
     rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
     const auto material = [&] { return std::abs(rival.shared_.log_scale - shared_.log_scale) > kMaterialScale; };
     double e = rival.total_evidence();
-    // The same valley again tells nothing; one that is as deep may be deeper at a second look.
-    constexpr double kSameValley = 0.01, kAsDeep = 30.0;
-    const bool same = std::abs(rival.shared_.log_scale - shared_.log_scale) < kSameValley;
-    if (same ? e > best : e > best - kAsDeep) {
+    // One that is as deep may be deeper at a second look. The likeliest start gets one in any case: what was found
+    // while reads came in may have kept a tag or two at places that the first reads favoured.
+    constexpr double kAsDeep = 30.0;
+    if (near + far == 1 || e > best - kAsDeep) {
       rival.iterate(true);
       e = rival.total_evidence();
     }

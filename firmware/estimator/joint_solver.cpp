@@ -81,7 +81,7 @@ Chains chains_of(const JointProblem& problem, const JointState& state) {
   Chains chains;
   for (std::size_t t = 0; t < problem.reads.size(); ++t)
     chains.push_back(
-        condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.correlation_length_m));
+        condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.structured));
   return chains;
 }
 

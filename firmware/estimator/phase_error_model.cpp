@@ -11,6 +11,11 @@ double structured_correlation(double distance_m, double length_m) {
   return (1.0 + a) * std::exp(-a);
 }
 
+double relative_strength(double fade_db, const StructuredShape& shape) {
+  constexpr double kFieldTwice_db = 40.0;  // of power there and back, per factor of ten in the field
+  return shape.fade_exponent == 0.0 ? 1.0 : std::pow(10.0, shape.fade_exponent * fade_db / kFieldTwice_db);
+}
+
 double white_sigma_rad(double rssi_dbm) {
   constexpr double kStrong_dbm = -45.0, kMiddle_dbm = -50.0, kWeak_dbm = -57.0;
   constexpr double kStrong_rad = 0.022, kMiddle_rad = 0.06, kWeak_rad = 0.2;
@@ -25,7 +30,7 @@ Conditioning condition_on_correlated(std::size_t count, const Eigen::Matrix<doub
                                      const Eigen::Vector4d& white_rad2, double structured_sigma_rad) {
   const double power = structured_sigma_rad * structured_sigma_rad;
   Conditioning c;
-  c.variance_rad2 = power + white_rad2[0];
+  c.variance_rad2 = power * correlation(0, 0) + white_rad2[0];
   if (count == 0) return c;
   const auto n = static_cast<Eigen::Index>(count);
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> K = power * correlation.block(1, 1, n, n);

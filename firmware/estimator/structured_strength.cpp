@@ -32,7 +32,7 @@ double restricted_log_likelihood(const JointProblem& problem, std::size_t t, con
 LogLikelihood of_tag(const JointProblem& problem, const JointState& state, std::size_t t, WhitenedTag& whitened) {
   LogLikelihood l{};
   predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
-  ChainConditioning conditioning = condition_chains(problem.reads[t], grid_rad(0), problem.correlation_length_m);
+  ChainConditioning conditioning = condition_chains(problem.reads[t], grid_rad(0), problem.structured);
   for (int i = 0; i < kGrid; ++i) {
     set_strength(grid_rad(i), conditioning);
     l[static_cast<std::size_t>(i)] = restricted_log_likelihood(problem, t, conditioning, whitened);
@@ -43,6 +43,13 @@ LogLikelihood of_tag(const JointProblem& problem, const JointState& state, std::
 double log_normal(double value, double centre, double log_sigma) {
   const double z = std::log(value / centre) / log_sigma;
   return -0.5 * z * z;
+}
+
+double log_sum(const LogLikelihood& l) {
+  const double top = *std::max_element(l.begin(), l.end());
+  double sum = 0.0;
+  for (const double value : l) sum += std::exp(value - top);
+  return top + std::log(sum);
 }
 
 // Mean of ln(sigma) under the weights exp(l): steadier than the argmax on a coarse grid.
@@ -77,6 +84,30 @@ void estimate_structured_strength(const JointProblem& problem, const StrengthOpt
   }
 }
 
+double estimate_fade_exponent(JointProblem problem, const JointState& state, const StrengthOptions& options) {
+  constexpr std::array<double, 7> kExponents{0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5};
+  std::array<double, kExponents.size()> l{};
+  WhitenedTag whitened;
+  for (std::size_t k = 0; k < l.size(); ++k) {
+    problem.structured.fade_exponent = kExponents[k];
+    LogLikelihood site{};
+    for (std::size_t i = 0; i < kGrid; ++i)
+      site[i] = log_normal(grid_rad(static_cast<int>(i)), options.prior_rad, options.prior_log_sigma);
+    for (std::size_t t = 0; t < problem.reads.size(); ++t) {
+      const LogLikelihood tag = of_tag(problem, state, t, whitened);
+      for (std::size_t i = 0; i < kGrid; ++i) site[i] += tag[i];
+    }
+    l[k] = log_sum(site);
+  }
+  const double top = *std::max_element(l.begin(), l.end());
+  double sum = 0.0, mean = 0.0;
+  for (std::size_t k = 0; k < l.size(); ++k) {
+    sum += std::exp(l[k] - top);
+    mean += std::exp(l[k] - top) * kExponents[k];
+  }
+  return mean / sum;
+}
+
 double estimate_correlation_length(const JointProblem& problem, const JointState& state, double usual_m) {
   constexpr std::array<double, 6> kLengths_m{0.03, 0.045, 0.065, 0.095, 0.14, 0.2};
   constexpr double kSiteLogSigma = 0.5;
@@ -87,7 +118,10 @@ double estimate_correlation_length(const JointProblem& problem, const JointState
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
     for (std::size_t i = 0; i < l.size(); ++i)
       l[i] += restricted_log_likelihood(
-          problem, t, condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, kLengths_m[i]), whitened);
+          problem, t,
+          condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad,
+                           {kLengths_m[i], problem.structured.fade_exponent}),
+          whitened);
   }
   const double top = *std::max_element(l.begin(), l.end());
   double sum = 0.0, mean = 0.0;

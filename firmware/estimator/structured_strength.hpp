@@ -16,6 +16,11 @@ struct StrengthOptions {
 // Writes structured_sigma_rad of every tag in state.
 void estimate_structured_strength(const JointProblem& problem, const StrengthOptions& options, JointState& state);
 
+// How much stronger the error is where a tag answers weakly: what suits all tags' residuals best, whatever the
+// site's strength.
+[[nodiscard]] double estimate_fade_exponent(JointProblem problem, const JointState& state,
+                                            const StrengthOptions& options);
+
 // The correlation length that suits all tags' residuals best, weighed against `usual_m` (a site's
 // lengths scatter about it by a factor of e^0.5).
 [[nodiscard]] double estimate_correlation_length(const JointProblem& problem, const JointState& state, double usual_m);

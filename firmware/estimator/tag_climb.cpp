@@ -18,7 +18,7 @@ TagLikelihood::TagLikelihood(const std::vector<JointRead>& reads, const JointPro
                              double structured_sigma_rad)
     : reads_(reads),
       problem_(problem),
-      conditioning_(condition_chains(reads, structured_sigma_rad, problem.correlation_length_m)) {
+      conditioning_(condition_chains(reads, structured_sigma_rad, problem.structured)) {
   seen_.reserve(reads.size());
   for (const JointRead& read : reads) {
     const ReadStates s = states_at(read, state, TagState{});

@@ -30,7 +30,7 @@ struct Chain {
 Chain straight_chain(int reads, double spacing_m, double white_rad2) {
   Chain chain;
   chain.world = make_world(1, 1, 1.0);
-  chain.world.problem.correlation_length_m = kLength_m;
+  chain.world.problem.structured.length_m = kLength_m;
   chain.world.truth.tags[0].structured_sigma_rad = 0.3;
   const JointRead first = chain.reads()[0];
   chain.reads().clear();
@@ -185,7 +185,7 @@ TEST(ChainWhitening, RowDerivativesAreNumericDerivativesOfTheResidual) {
   std::mt19937 random(37);
   World world = make_world(2, 40, 1.4);
   // Dense enough to mix neighbours across knots; small residuals, so that nothing wraps or flips.
-  world.problem.correlation_length_m = 0.2;
+  world.problem.structured.length_m = 0.2;
   JointState state = world.truth;
   for (std::size_t k = 1; k < state.knots.size(); ++k)
     state.knots[k].path_correction_W = joint_scene::random_vector(random, 0.005);
@@ -243,9 +243,9 @@ TEST(ChainWhitening, ReusesItsWorkSpaceWithoutATrace) {
 
 TEST(ChainConditioning, OfAnotherStrengthIsTheSameMadeAnew) {
   Chain chain = straight_chain(12, 0.03, 0.01);
-  ChainConditioning changed = condition_chains(chain.reads(), 0.2, kLength_m);
+  ChainConditioning changed = condition_chains(chain.reads(), 0.2, {kLength_m});
   set_strength(0.6, changed);
-  const ChainConditioning fresh = condition_chains(chain.reads(), 0.6, kLength_m);
+  const ChainConditioning fresh = condition_chains(chain.reads(), 0.6, {kLength_m});
   for (std::size_t i = 0; i < fresh.reads.size(); ++i) {
     EXPECT_EQ(changed.reads[i].given.variance_rad2, fresh.reads[i].given.variance_rad2);
     EXPECT_EQ(changed.reads[i].given.weights, fresh.reads[i].given.weights);
