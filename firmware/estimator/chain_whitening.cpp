@@ -20,7 +20,8 @@ using Lean = ChainConditioning::Read;
 
 // The last reads of the same chain, near enough to share the structured error; `usable` says which to skip.
 template <class Usable>
-Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, double length_m, const Usable& usable) {
+Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, const StructuredShape& shape, const Usable& usable) {
+  const double length_m = shape.long_share > 0.0 ? std::max(shape.length_m, kLongLength_m) : shape.length_m;
   Lean n;
   const int last_knot = reads[i].knot + 1;
   for (std::size_t j = i; j-- > 0 && n.count < Conditioning::kMaxNeighbours;) {
@@ -44,7 +45,7 @@ void condition(std::size_t i, const std::vector<JointRead>& reads, double sigma_
     for (std::size_t b = 0; b < a; ++b) {
       const auto c = static_cast<Eigen::Index>(b);
       n.correlation(r, c) = n.correlation(c, r) =
-          strength[r] * strength[c] * structured_correlation((at(a).p_W_A - at(b).p_W_A).norm(), shape.length_m);
+          strength[r] * strength[c] * structured_correlation((at(a).p_W_A - at(b).p_W_A).norm(), shape);
     }
   }
   n.given = condition_on_correlated(n.count, n.correlation, n.white_rad2, sigma_rad);
@@ -98,7 +99,7 @@ ChainConditioning condition_chains(const std::vector<JointRead>& reads, double s
   ChainConditioning c{{}, structured_sigma_rad, shape};
   c.reads.reserve(reads.size());
   for (std::size_t i = 0; i < reads.size(); ++i) {
-    c.reads.push_back(neighbours_of(i, reads, shape.length_m, [](std::size_t) { return true; }));
+    c.reads.push_back(neighbours_of(i, reads, shape, [](std::size_t) { return true; }));
     condition(i, reads, structured_sigma_rad, shape, c.reads.back());
   }
   return c;
@@ -140,7 +141,7 @@ void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& proble
     Lean without_outliers;
     const auto usable = [&](std::size_t j) { return raws[j].usable; };
     if (!std::all_of(n->neighbour.begin(), n->neighbour.begin() + static_cast<std::ptrdiff_t>(n->count), usable)) {
-      without_outliers = neighbours_of(i, reads, conditioning.shape.length_m, usable);
+      without_outliers = neighbours_of(i, reads, conditioning.shape, usable);
       condition(i, reads, conditioning.structured_sigma_rad, conditioning.shape, without_outliers);
       n = &without_outliers;
     }

@@ -94,7 +94,7 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
     }
   if (shape) structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
   estimate_structured_strength(known, strength, of_known);
-  if (shape) structured_.length_m = estimate_correlation_length(known, of_known, config_.joint.correlation_length_m);
+  if (shape) structured_ = estimate_correlation(known, of_known, config_.joint.correlation_length_m);
   problem.structured = structured_;
   double typical = 0.0;
   for (const TagState& t : of_known.tags)

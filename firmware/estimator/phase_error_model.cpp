@@ -6,9 +6,15 @@
 
 namespace rfmvo {
 
-double structured_correlation(double distance_m, double length_m) {
+double matern32(double distance_m, double length_m) {
   const double a = std::abs(distance_m) / length_m;
   return (1.0 + a) * std::exp(-a);
+}
+
+double structured_correlation(double distance_m, const StructuredShape& shape) {
+  const double near = matern32(distance_m, shape.length_m);
+  if (shape.long_share == 0.0) return near;
+  return near + shape.long_share * (matern32(distance_m, kLongLength_m) - near);
 }
 
 double relative_strength(double fade_db, const StructuredShape& shape) {
@@ -45,7 +51,7 @@ Conditioning condition_on_correlated(std::size_t count, const Eigen::Matrix<doub
 Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
                                      const Eigen::Vector4d& white_rad2, double structured_sigma_rad, double length_m) {
   const Eigen::Matrix4d correlation =
-      distances_m.unaryExpr([&](double d) { return structured_correlation(d, length_m); });
+      distances_m.unaryExpr([&](double d) { return matern32(d, length_m); });
   return condition_on_correlated(count, correlation, white_rad2, structured_sigma_rad);
 }
 

@@ -12,7 +12,7 @@ namespace rfmvo {
 // Matern 3/2 correlation (1 + a) exp(-a), a = distance / length. With length 5.8 cm it runs through
 // the measured 0.94/0.85/0.61/0.37/0.16 at 2/4/8/12/16 cm within 0.08; exp(-distance/length), the
 // whitener of first thought, is 0.15 too low at 2 cm.
-[[nodiscard]] double structured_correlation(double distance_m, double length_m);
+[[nodiscard]] double matern32(double distance_m, double length_m);
 
 // How the structured errors of a site go: alike over this length, and stronger where the direct path is weak
 // against its echoes: in proportion to (field strength against the tag's strong reads)^-fade_exponent. In an aisle of
@@ -20,7 +20,12 @@ namespace rfmvo {
 struct StructuredShape {
   double length_m = 0.058;
   double fade_exponent = 0.0;
+  double long_share = 0.0;  // of the variance: alike over kLongLength_m (echoes from large, near surfaces)
 };
+inline constexpr double kLongLength_m = 0.2;
+
+// Correlation of the structured errors of two reads whose antennas were this far apart.
+[[nodiscard]] double structured_correlation(double distance_m, const StructuredShape& shape);
 
 // Strength of a read's structured error against that of the tag's strong reads. fade_db: how much less power.
 [[nodiscard]] double relative_strength(double fade_db, const StructuredShape& shape);

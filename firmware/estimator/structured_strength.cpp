@@ -108,28 +108,31 @@ double estimate_fade_exponent(JointProblem problem, const JointState& state, con
   return mean / sum;
 }
 
-double estimate_correlation_length(const JointProblem& problem, const JointState& state, double usual_m) {
+StructuredShape estimate_correlation(const JointProblem& problem, const JointState& state, double usual_m) {
   constexpr std::array<double, 6> kLengths_m{0.03, 0.045, 0.065, 0.095, 0.14, 0.2};
+  constexpr std::array<double, 4> kLongShares{0.0, 0.2, 0.4, 0.6};
   constexpr double kSiteLogSigma = 0.5;
-  std::array<double, kLengths_m.size()> l{};
+  std::vector<std::pair<StructuredShape, double>> shapes;  // with their ln posterior
   WhitenedTag whitened;
-  for (std::size_t i = 0; i < l.size(); ++i) l[i] = log_normal(kLengths_m[i], usual_m, kSiteLogSigma);
+  for (const double length_m : kLengths_m)
+    for (const double long_share : kLongShares)
+      shapes.push_back({{length_m, problem.structured.fade_exponent, long_share},
+                        log_normal(length_m, usual_m, kSiteLogSigma)});
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
-    for (std::size_t i = 0; i < l.size(); ++i)
-      l[i] += restricted_log_likelihood(
-          problem, t,
-          condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad,
-                           {kLengths_m[i], problem.structured.fade_exponent}),
-          whitened);
+    for (auto& [shape, l] : shapes)
+      l += restricted_log_likelihood(
+          problem, t, condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, shape), whitened);
   }
-  const double top = *std::max_element(l.begin(), l.end());
-  double sum = 0.0, mean = 0.0;
-  for (std::size_t i = 0; i < l.size(); ++i) {
-    sum += std::exp(l[i] - top);
-    mean += std::exp(l[i] - top) * std::log(kLengths_m[i]);
+  double top = shapes[0].second, sum = 0.0, log_length = 0.0, long_share = 0.0;
+  for (const auto& [shape, l] : shapes) top = std::max(top, l);
+  for (const auto& [shape, l] : shapes) {
+    const double w = std::exp(l - top);
+    sum += w;
+    log_length += w * std::log(shape.length_m);
+    long_share += w * shape.long_share;
   }
-  return std::exp(mean / sum);
+  return {std::exp(log_length / sum), problem.structured.fade_exponent, long_share / sum};
 }
 
 }  // namespace rfmvo

@@ -21,8 +21,9 @@ void estimate_structured_strength(const JointProblem& problem, const StrengthOpt
 [[nodiscard]] double estimate_fade_exponent(JointProblem problem, const JointState& state,
                                             const StrengthOptions& options);
 
-// The correlation length that suits all tags' residuals best, weighed against `usual_m` (a site's
-// lengths scatter about it by a factor of e^0.5).
-[[nodiscard]] double estimate_correlation_length(const JointProblem& problem, const JointState& state, double usual_m);
+// The correlation length and share of long echoes that suit all tags' residuals best, weighed against `usual_m` (a
+// site's lengths scatter about it by a factor of e^0.5). The fade exponent stays.
+[[nodiscard]] StructuredShape estimate_correlation(const JointProblem& problem, const JointState& state,
+                                                   double usual_m);
 
 }  // namespace rfmvo
