@@ -65,6 +65,30 @@ Eigen::Matrix3d spread_of_modes(const SegmentTag& tag) {
   return spread;
 }
 
+// What other solutions of the segment say of a tag: second moments about the published position, in W and relative
+// to the camera at one pose of the path, and the probability that it is somewhere else altogether.
+struct OtherSolutions {
+  Eigen::Matrix3d spread_W = Eigen::Matrix3d::Zero(), spread_C = Eigen::Matrix3d::Zero();
+  double elsewhere = 0.0;
+};
+
+OtherSolutions other_solutions(const JointSegment& segment, const Epc& epc, const TagEstimate& e, const PathPose& pose) {
+  constexpr double kElsewhere_m = 0.15;
+  OtherSolutions others;
+  const std::vector<double> weights = segment.weights();
+  for (std::size_t r = 0; r < segment.rivals().size(); ++r) {
+    const JointSegment& rival = segment.rivals()[r];
+    const SegmentTag& tag = rival.tags().at(epc);
+    if (!tag.placed) continue;
+    const Eigen::Vector3d p_W_X = rival.to_W(tag.state.p_W_X);
+    const Eigen::Vector3d in_W = p_W_X - e.p_W_X_m, in_C = rival.T_W_C(pose).inverse() * p_W_X - e.p_C_X_m;
+    others.spread_W += weights[r + 1] * in_W * in_W.transpose();
+    others.spread_C += weights[r + 1] * in_C * in_C.transpose();
+    if (in_C.norm() > kElsewhere_m) others.elsewhere += weights[r + 1];
+  }
+  return others;
+}
+
 struct Accuracy {
   double hdop = 0.0, bearing_sweep_rad = 0.0, independent_reads = 0.0;
 };
@@ -95,16 +119,17 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const E
   return a;
 }
 
-bool ambiguous(const SegmentTag& tag) {
+// elsewhere: probability of other solutions that have the tag at another place.
+bool ambiguous(const SegmentTag& tag, double elsewhere) {
   constexpr double kSecondModeMatters = 0.02;
-  return tag.modes.size() > 1 && 1.0 - tag.modes[0].weight > kSecondModeMatters;
+  return (tag.modes.empty() ? 0.0 : 1.0 - tag.modes[0].weight) + elsewhere > kSecondModeMatters;
 }
 
-TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Matrix3d& covariance_m2,
-                    DeviceTime now, const JointConfig& config) {
+TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, bool undecided,
+                    const Eigen::Matrix3d& covariance_m2, DeviceTime now, const JointConfig& config) {
   if (!segment.started() || !tag.placed) return tag.placed ? TagStatus::kNoScale : TagStatus::kTooFewReads;
   if (!segment.scale_observable()) return TagStatus::kNoScale;
-  if (ambiguous(tag)) return TagStatus::kMirror;
+  if (undecided) return TagStatus::kMirror;
   if ((now - tag.last_read).seconds() > config.stale_after_s) return TagStatus::kStale;
   const double sigma_m = std::sqrt(covariance_m2.trace());
   return sigma_m > config.located_sigma_max_m ? TagStatus::kWeakGeometry : TagStatus::kConverged;
@@ -133,11 +158,15 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   e.covariance_C_m2 = camera_relative_covariance(segment, tag, closest.pose, p) +
                       rotation_covariance(e.p_C_X_m, camera_rotation_sigma_rad);
   e.covariance_m2 += rotation_covariance(p - T_W_C.t, camera_rotation_sigma_rad);
+  const OtherSolutions others = other_solutions(segment, epc, e, closest.pose);
+  e.covariance_m2 += others.spread_W;
+  e.covariance_C_m2 += others.spread_C;
+  const bool undecided = ambiguous(tag, others.elsewhere);
   const Accuracy accuracy = accuracy_of(segment, tag, p, config.correlation_length_m);
   e.hdop = accuracy.hdop;
   e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
   e.independent_reads = accuracy.independent_reads;
-  e.status = status_of(segment, tag, e.covariance_C_m2, now, config);
+  e.status = status_of(segment, tag, undecided, e.covariance_C_m2, now, config);
   constexpr std::size_t kMaxHypotheses = 8;
   for (std::size_t i = 0; i < std::min(tag.modes.size(), kMaxHypotheses); ++i) {
     const TagMode& mode = tag.modes[i];
@@ -146,7 +175,7 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
                             first ? e.covariance_m2 : Eigen::Matrix3d(mode.covariance.topLeftCorner<3, 3>()),
                             mode.weight});
   }
-  if (!ambiguous(tag)) return e;
+  if (!undecided) return e;
   // Who looks at the covariance alone must not take an undecided position for a good one.
   const Eigen::Matrix3d spread = spread_of_modes(tag), R_C_W = T_W_C.R.conjugate().toRotationMatrix();
   e.covariance_m2 += spread;

@@ -182,7 +182,11 @@ double JointSegment::scale_m_per_unit() const { return std::exp(shared_.log_scal
 
 double JointSegment::log_scale_sigma() const {
   if (covariance_.shared.size() == 0) return 1e9;
-  return std::sqrt(std::max(0.0, covariance_.shared(SharedLayout::kLogScale, SharedLayout::kLogScale)));
+  double variance = covariance_.shared(SharedLayout::kLogScale, SharedLayout::kLogScale);
+  const std::vector<double> probability = weights();
+  for (std::size_t r = 0; r < rivals_.size(); ++r)
+    variance += probability[r + 1] * std::pow(rivals_[r].shared_.log_scale - shared_.log_scale, 2);
+  return std::sqrt(std::max(0.0, variance));
 }
 
 Rigid3 JointSegment::T_W_C(const PathPose& pose) const {

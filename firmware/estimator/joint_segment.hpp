@@ -80,7 +80,12 @@ class JointSegment {
   [[nodiscard]] Eigen::MatrixXd pose_jacobian(const PathPose& pose) const;
   [[nodiscard]] const JointCovariance& shared_covariance() const { return covariance_; }
 
+  // Other solutions of the same reads, and the probabilities of this one (first) and of them.
+  [[nodiscard]] const std::vector<JointSegment>& rivals() const { return rivals_; }
+  [[nodiscard]] std::vector<double> weights() const;
+
  private:
+  static constexpr double kMaterialLogScale = 0.1;  // scales nearer than that compete, but leave the scale known
   static constexpr std::size_t kMinReads = 8;  // of a tag that is located: four unknowns and some to judge by
 
   [[nodiscard]] std::optional<int> port_index(std::uint8_t port) const;
@@ -97,6 +102,8 @@ class JointSegment {
   bool start();
   void iterate(bool thorough);
   void consider_rivals();
+  void try_starts(std::vector<JointSegment>& solutions) const;
+  void try_offsets(std::vector<JointSegment>& solutions) const;
   void forget_solution();  // shared states and strengths as they are before any read
   void set_drift(double factor);
   void estimate_drift();
@@ -124,6 +131,8 @@ class JointSegment {
 
   bool started_ = false;
   double next_start_arc_V_ = 0.0;
+  double evidence_ = 0.0;             // total_evidence() when rivals were last considered
+  std::vector<JointSegment> rivals_;  // other solutions, nearly as likely
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
   StructuredShape structured_;
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show

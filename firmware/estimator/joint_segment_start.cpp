@@ -1,4 +1,4 @@
-// JointSegment: where it starts from, and whether another start explains the reads as well.
+// JointSegment: where it starts from.
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +10,6 @@ namespace rfmvo {
 namespace {
 
 constexpr double kMeanTagDistance_m = 2.0;  // part of what hops measure as electrical length
-constexpr double kOtherScale = 0.035;       // of ln(scale): farther apart is another scale
-constexpr double kMaterialScale = 0.1;      // nearer ones compete, but leave the scale known
 
 }  // namespace
 
@@ -73,6 +71,7 @@ void JointSegment::adopt(const StartCandidate& candidate) {
   shared_.knots.assign(1, {});
   knot_spacing_V_ = config_.joint.knot_spacing_m / std::exp(shared_.log_scale);
   covariance_ = {};
+  rivals_.clear();
   started_ = true;
 }
 
@@ -85,48 +84,10 @@ bool JointSegment::start() {
   if (found.empty()) return false;
   evidence_margin_ = found[0].evidence;
   for (const StartCandidate& c : found)
-    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kMaterialScale)
+    if (std::abs(c.state.log_scale - found[0].state.log_scale) > kMaterialLogScale)
       evidence_margin_ = std::min(evidence_margin_, found[0].evidence - c.evidence);
   adopt(found[0]);
   return true;
-}
-
-// At the end: does another start explain all reads better, or as well with another scale?
-void JointSegment::consider_rivals() {
-  double best = total_evidence(), second = 0.0;
-  constexpr double kWorthATry = 60.0;  // nats below the best start
-  JointSegment rival = *this;
-  double first_evidence = 0.0;
-  constexpr int kMaxRivals = 2;  // with about this scale, and as many with another
-  int near = 0, far = 0;
-  for (const StartCandidate& c : rival.search_starts()) {
-    if (first_evidence == 0.0) first_evidence = c.evidence;
-    if (c.evidence < first_evidence - kWorthATry) break;
-    int& tried = std::abs(c.state.log_scale - shared_.log_scale) > kMaterialScale ? far : near;
-    if (tried++ >= kMaxRivals) continue;
-    rival = *this;
-    rival.adopt(c);
-    rival.iterate(false);  // enough to compare; only a better one is worth the whole effort
-    const auto material = [&] { return std::abs(rival.shared_.log_scale - shared_.log_scale) > kMaterialScale; };
-    double e = rival.total_evidence();
-    // One that is as deep may be deeper at a second look. The likeliest start gets one in any case: what was found
-    // while reads came in may have kept a tag or two at places that the first reads favoured.
-    constexpr double kAsDeep = 30.0;
-    if (near + far == 1 || e > best - kAsDeep) {
-      rival.iterate(true);
-      e = rival.total_evidence();
-    }
-    if (e > best) {
-      if (material()) second = std::max(second, best);
-      best = e;
-      const auto revision = revision_;
-      *this = rival;
-      revision_ = revision;
-    } else if (material()) {
-      second = std::max(second, e);
-    }
-  }
-  evidence_margin_ = best - second;
 }
 
 }  // namespace rfmvo
