@@ -116,6 +116,7 @@ class JointSegment {
   }
   void refine(int rounds);
   void estimate_noise(const std::vector<Candidate>& some, bool shape, JointProblem& problem, JointState& state);
+  [[nodiscard]] Eigen::MatrixXd missing_information() const;
   void compute_covariance();
   void estimate_electrical_lengths();
 

@@ -125,10 +125,32 @@ void JointSegment::refine(int rounds) {
   keep(some, state);
 }
 
+// Over all undecided tags: the covariance of what a tag's modes pull the shared states to.
+Eigen::MatrixXd JointSegment::missing_information() const {
+  Eigen::MatrixXd missing;
+  const double scale = std::exp(shared_.log_scale);
+  for (const auto& [epc, tag] : tags_) {
+    if (tag.modes.size() < 2 || tag.unique()) continue;
+    const JointProblem one = problem_for(std::vector{epc}, scale);
+    JointState state = state_for(std::vector{epc});
+    if (missing.size() == 0) missing = Eigen::MatrixXd::Zero(layout().size(), layout().size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(layout().size());
+    for (const TagMode& mode : tag.modes) {
+      if (mode.weight < kLeastShare) continue;
+      state.tags = {mode.tag};
+      const Eigen::VectorXd pull = tag_coupling(one, state).gradient;
+      missing += mode.weight * pull * pull.transpose();
+      mean += mode.weight * pull;
+    }
+    missing -= mean * mean.transpose();
+  }
+  return missing;
+}
+
 void JointSegment::compute_covariance() {
   const std::vector<Candidate> some = candidates(kLeastShare);
   if (some.empty()) return;
-  covariance_ = covariance(problem_for(some), state_for(some));
+  covariance_ = covariance(problem_for(some), state_for(some), missing_information());
   for (auto& [epc, tag] : tags_) tag.parts.clear();
   for (std::size_t i = 0; i < some.size(); ++i) {
     SegmentTag& tag = tags_.at(some[i].epc);

@@ -1,6 +1,7 @@
 #include "estimator/joint_solver.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -253,9 +254,27 @@ SolverReport solve(const JointProblem& problem, const SolverOptions& options, Jo
   return report;
 }
 
-JointCovariance covariance(const JointProblem& problem, const JointState& state) {
+namespace {
+
+// Of `whole` less `missing`, or, where too much is missing for a quadratic, less as much of it as leaves a tenth.
+Eigen::MatrixXd inverse_without(const Eigen::MatrixXd& whole, const Eigen::MatrixXd& missing) {
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(whole.rows(), whole.cols());
+  if (missing.size() == 0) return whole.ldlt().solve(identity);
+  // In coordinates in which `whole` is the identity, `missing` may take 90 % of any direction.
+  const Eigen::LLT<Eigen::MatrixXd> llt(whole);
+  Eigen::MatrixXd M = llt.matrixL().solve(missing);
+  M = llt.matrixL().solve(M.transpose().eval()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M);
+  constexpr double kMostMissing = 0.9;
+  const Eigen::VectorXd left = (1.0 - eigen.eigenvalues().array().max(0.0).min(kMostMissing)).inverse();
+  const Eigen::MatrixXd half = llt.matrixU().solve(eigen.eigenvectors());
+  return half * left.asDiagonal() * half.transpose();
+}
+
+}  // namespace
+
+JointCovariance covariance(const JointProblem& problem, const JointState& state, const Eigen::MatrixXd& missing) {
   const NormalEquations eq = build(problem, chains_of(problem, state), state, false);
-  const int size = eq.layout.size();
   Eigen::MatrixXd S = eq.H;
   std::vector<Eigen::MatrixXd> gain(eq.tags.size());  // H_tt^-1 H_ts
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
@@ -266,7 +285,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state)
   JointCovariance c;
   c.layout = eq.layout;
   c.information = S.selfadjointView<Eigen::Lower>();
-  c.shared = S.selfadjointView<Eigen::Lower>().ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  c.shared = inverse_without(c.information, missing);
   c.shared = (0.5 * (c.shared + c.shared.transpose())).eval();
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
     const Eigen::MatrixXd cross = gain[t] * c.shared;

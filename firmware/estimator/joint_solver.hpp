@@ -38,12 +38,15 @@ struct SolverReport {
 // cross-covariance to the shared states.
 struct JointCovariance {
   SharedLayout layout;
-  Eigen::MatrixXd information;  // of the shared states, tags eliminated: the inverse of `shared`
-  Eigen::MatrixXd shared;
+  Eigen::MatrixXd information;  // of the shared states, tags eliminated
+  Eigen::MatrixXd shared;       // inverse of the information, less what is missing of it
   std::vector<Eigen::Matrix4d> tag;
   std::vector<Eigen::MatrixXd> tag_shared;  // 4 x size()
 };
-[[nodiscard]] JointCovariance covariance(const JointProblem& problem, const JointState& state);
+// `missing` (size() x size(), or empty): what is not known of the shared states because modes are undecided, as
+// information: by Louis (1982) the covariance of the gradient over the modes.
+[[nodiscard]] JointCovariance covariance(const JointProblem& problem, const JointState& state,
+                                         const Eigen::MatrixXd& missing = {});
 
 // One tag (problem holds it alone) seen from the shared states: its own covariance with them fixed,
 // how it leans on them, and what its reads say of them once the tag itself is eliminated.
