@@ -1,5 +1,6 @@
 #include "estimator/joint_estimator.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -91,7 +92,18 @@ OtherSolutions other_solutions(const JointSegment& segment, const Epc& epc, cons
 
 struct Accuracy {
   double hdop = 0.0, bearing_sweep_rad = 0.0, independent_reads = 0.0;
+  bool on_a_line = false;  // all antenna places, nearly: any turn about it leaves the phases as they are
 };
+
+bool on_a_line(const std::vector<Eigen::Vector3d>& places) {
+  constexpr double kLine_m = 0.08;  // a quarter wavelength
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : places) mean += p / static_cast<double>(places.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : places) spread += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / static_cast<double>(places.size()));
+  return axes.eigenvalues()[1] < kLine_m * kLine_m;
+}
 
 Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Vector3d& p_W_X, double length_m) {
   Accuracy a;
@@ -116,6 +128,7 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const E
     a.bearing_sweep_rad = std::max(a.bearing_sweep_rad, 2.0 * std::acos(cosine));
   }
   a.hdop = horizontal_dilution(antennas, p_W_X).value;
+  a.on_a_line = on_a_line(antennas);
   return a;
 }
 
@@ -126,10 +139,10 @@ bool ambiguous(const SegmentTag& tag, double elsewhere) {
 }
 
 TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, bool undecided,
-                    const Eigen::Matrix3d& covariance_m2, DeviceTime now, const JointConfig& config) {
+                    bool line, const Eigen::Matrix3d& covariance_m2, DeviceTime now, const JointConfig& config) {
   if (!segment.started() || !tag.placed) return tag.placed ? TagStatus::kNoScale : TagStatus::kTooFewReads;
   if (!segment.scale_observable()) return TagStatus::kNoScale;
-  if (undecided) return TagStatus::kMirror;
+  if (undecided) return line ? TagStatus::kCircle : TagStatus::kMirror;
   if ((now - tag.last_read).seconds() > config.stale_after_s) return TagStatus::kStale;
   const double sigma_m = std::sqrt(covariance_m2.trace());
   return sigma_m > config.located_sigma_max_m ? TagStatus::kWeakGeometry : TagStatus::kConverged;
@@ -166,7 +179,7 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   e.hdop = accuracy.hdop;
   e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
   e.independent_reads = accuracy.independent_reads;
-  e.status = status_of(segment, tag, undecided, e.covariance_C_m2, now, config);
+  e.status = status_of(segment, tag, undecided, accuracy.on_a_line, e.covariance_C_m2, now, config);
   constexpr std::size_t kMaxHypotheses = 8;
   for (std::size_t i = 0; i < std::min(tag.modes.size(), kMaxHypotheses); ++i) {
     const TagMode& mode = tag.modes[i];

@@ -1,6 +1,8 @@
 #include "estimator/tag_modes.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -103,6 +105,32 @@ std::vector<Eigen::Vector3d> coherent_places(const std::vector<SpectrumRead>& re
   return places;
 }
 
+// Images of the modes that the antennas' places cannot tell from them: mirrored in the plane that the antennas moved in
+// and, where that is hardly more than a line, turned about it.
+std::vector<Eigen::Vector3d> twin_places(const std::vector<SpectrumRead>& reads, const std::vector<TagMode>& modes) {
+  constexpr double kLine_m = 0.08;  // a quarter wavelength: a spread that turns phases by less than pi at the ends
+  constexpr int kTurns = 12;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const SpectrumRead& r : reads) centre += r.p_W_A.cast<double>() / static_cast<double>(reads.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const SpectrumRead& r : reads) {
+    const Eigen::Vector3d d = r.p_W_A.cast<double>() - centre;
+    spread += d * d.transpose() / static_cast<double>(reads.size());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);  // rising
+  const bool line = std::sqrt(std::max(0.0, axes.eigenvalues()[1])) < kLine_m;
+  constexpr std::size_t kBest = 4;
+  std::vector<Eigen::Vector3d> twins;
+  for (std::size_t m = 0; m < std::min(kBest, modes.size()); ++m) {
+    const Eigen::Vector3d d = modes[m].tag.p_W_X - centre;
+    const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+    twins.push_back(centre + d - 2.0 * d.dot(normal) * normal);
+    for (int k = 1; line && m == 0 && k < kTurns; ++k)
+      twins.push_back(centre + Eigen::AngleAxisd(kTwoPi * k / kTurns, axes.eigenvectors().col(2)) * d);
+  }
+  return twins;
+}
+
 std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, const JointState& state,
                                 const BeamModel& beams, const std::vector<Eigen::Vector3d>& places, std::size_t count) {
   constexpr std::size_t kReads = 64;
@@ -114,7 +142,12 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
   if (ranked.size() > count) ranked.resize(count);
   std::vector<Eigen::Vector3d> best = coherent_places(reads, beams);
   for (const SpectrumPeak& peak : ranked) best.push_back(peak.p_W_X);
-  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, best);
+  std::vector<TagMode> modes = refine_all(problem.reads[index], problem, state, state.tags[index], beams, best);
+  if (modes.empty()) return modes;
+  // A grid may miss one of two places that fit alike: never leave its twin to chance.
+  std::vector<Eigen::Vector3d> twins = twin_places(reads, modes);
+  for (const TagMode& mode : modes) twins.push_back(mode.tag.p_W_X);
+  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, twins);
 }
 
 std::vector<TagMode> refresh_modes(const JointProblem& problem, std::size_t index, const JointState& state,
