@@ -92,17 +92,22 @@ OtherSolutions other_solutions(const JointSegment& segment, const Epc& epc, cons
 
 struct Accuracy {
   double hdop = 0.0, bearing_sweep_rad = 0.0, independent_reads = 0.0;
-  bool on_a_line = false;  // all antenna places, nearly: any turn about it leaves the phases as they are
+  std::optional<Eigen::Matrix3d> circle;  // see circle_through()
 };
 
-bool on_a_line(const std::vector<Eigen::Vector3d>& places) {
+// Antenna places on a line, nearly: any turn about it leaves the phases as they are. Then the second moment about p of
+// the circle through p, over all turns: 3/2 r^2 towards the line, 1/2 r^2 along the circle.
+std::optional<Eigen::Matrix3d> circle_through(const Eigen::Vector3d& p, const std::vector<Eigen::Vector3d>& places) {
   constexpr double kLine_m = 0.08;  // a quarter wavelength
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : places) mean += p / static_cast<double>(places.size());
+  for (const Eigen::Vector3d& a : places) mean += a / static_cast<double>(places.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : places) spread += (p - mean) * (p - mean).transpose();
+  for (const Eigen::Vector3d& a : places) spread += (a - mean) * (a - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / static_cast<double>(places.size()));
-  return axes.eigenvalues()[1] < kLine_m * kLine_m;
+  if (axes.eigenvalues()[1] > kLine_m * kLine_m) return std::nullopt;
+  const Eigen::Vector3d along = axes.eigenvectors().col(2);
+  const Eigen::Vector3d radius = (p - mean) - along.dot(p - mean) * along, tangent = along.cross(radius);
+  return Eigen::Matrix3d(1.5 * radius * radius.transpose() + 0.5 * tangent * tangent.transpose());
 }
 
 Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Vector3d& p_W_X, double length_m) {
@@ -128,7 +133,7 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const E
     a.bearing_sweep_rad = std::max(a.bearing_sweep_rad, 2.0 * std::acos(cosine));
   }
   a.hdop = horizontal_dilution(antennas, p_W_X).value;
-  a.on_a_line = on_a_line(antennas);
+  a.circle = circle_through(p_W_X, antennas);
   return a;
 }
 
@@ -179,7 +184,7 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   e.hdop = accuracy.hdop;
   e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
   e.independent_reads = accuracy.independent_reads;
-  e.status = status_of(segment, tag, undecided, accuracy.on_a_line, e.covariance_C_m2, now, config);
+  e.status = status_of(segment, tag, undecided, accuracy.circle.has_value(), e.covariance_C_m2, now, config);
   constexpr std::size_t kMaxHypotheses = 8;
   for (std::size_t i = 0; i < std::min(tag.modes.size(), kMaxHypotheses); ++i) {
     const TagMode& mode = tag.modes[i];
@@ -190,7 +195,7 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   }
   if (!undecided) return e;
   // Who looks at the covariance alone must not take an undecided position for a good one.
-  const Eigen::Matrix3d spread = spread_of_modes(tag), R_C_W = T_W_C.R.conjugate().toRotationMatrix();
+  const Eigen::Matrix3d spread = accuracy.circle.value_or(spread_of_modes(tag)), R_C_W = T_W_C.R.conjugate().toRotationMatrix();
   e.covariance_m2 += spread;
   e.covariance_C_m2 += R_C_W * spread * R_C_W.transpose();
   return e;

@@ -18,6 +18,7 @@ namespace {
 constexpr double kSameMode_m = 0.03;
 // A mode this much less likely than the best (in ln) is no longer carried.
 constexpr double kMaxCostAbove = 40.0;
+constexpr std::size_t kMaxModes = 12;  // carried; a circle of positions has no end of them
 
 // Local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
 std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const JointProblem& problem,
@@ -41,7 +42,8 @@ std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const Joint
     modes.push_back({tag, top.covariance, top.cost, signal_cost, log_evidence, 0.0});
   }
   std::stable_sort(modes.begin(), modes.end(), [](const TagMode& a, const TagMode& b) { return a.cost < b.cost; });
-  while (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove) modes.pop_back();
+  while (modes.size() > kMaxModes || (!modes.empty() && modes.back().cost > modes.front().cost + kMaxCostAbove))
+    modes.pop_back();
   weigh_modes(modes);
   return modes;
 }
