@@ -100,7 +100,8 @@ class JointSegment {
   [[nodiscard]] std::vector<StartCandidate> search_starts();
   void adopt(const StartCandidate& candidate);
   bool start();
-  void iterate(bool thorough);
+  enum class Depth { kLook, kAside, kFull };  // one round; two with noise and drift as they are; four with all
+  void iterate(Depth depth);
   void consider_rivals();
   void try_starts(std::vector<JointSegment>& solutions) const;
   void try_offsets(std::vector<JointSegment>& solutions) const;
@@ -114,7 +115,7 @@ class JointSegment {
   [[nodiscard]] SharedLayout layout() const {
     return {static_cast<int>(shared_.ports.size()), static_cast<int>(shared_.knots.size())};
   }
-  void refine(int rounds);
+  void refine(bool shape);
   void estimate_noise(const std::vector<Candidate>& some, bool shape, JointProblem& problem, JointState& state);
   [[nodiscard]] Eigen::MatrixXd missing_information() const;
   void compute_covariance();

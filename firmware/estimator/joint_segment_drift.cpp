@@ -31,7 +31,7 @@ void JointSegment::estimate_drift() {
     if (factor > 2.1 * before.drift_factor_ || factor < before.drift_factor_ / 2.1) continue;
     JointSegment trial = before;
     trial.set_drift(factor);
-    if (factor != before.drift_factor_) trial.refine(1);
+    if (factor != before.drift_factor_) trial.refine(false);
     const double likelihood = trial.total_evidence();
     if (!chosen || likelihood > best) {
       best = likelihood;

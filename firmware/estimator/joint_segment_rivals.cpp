@@ -37,8 +37,9 @@ void JointSegment::try_starts(std::vector<JointSegment>& solutions) const {
     if (tried++ >= kMaxRivals) continue;
     JointSegment rival = *this;
     rival.adopt(c);
-    rival.iterate(false);
-    if (near + far == 1 || rival.total_evidence() > solutions[0].evidence_ - kAsDeep) rival.iterate(true);
+    rival.iterate(Depth::kLook);
+    if (near + far == 1 || rival.total_evidence() > solutions[0].evidence_ - kAsDeep)
+      rival.iterate(Depth::kFull);
     rival.evidence_ = rival.total_evidence();
     solutions.push_back(std::move(rival));
   }
@@ -52,7 +53,7 @@ void JointSegment::try_offsets(std::vector<JointSegment>& solutions) const {
       JointSegment rival = *this;
       rival.shared_.ports[p].offset_rad += aside_rad;
       rival.covariance_ = {};
-      rival.iterate(true);
+      rival.iterate(Depth::kAside);
       rival.evidence_ = rival.total_evidence();
       solutions.push_back(std::move(rival));
     }

@@ -112,15 +112,13 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
 }
 
 // One step of expectation maximisation: the path and all positions, each mode counting as much as it is likely.
-void JointSegment::refine(int rounds) {
+void JointSegment::refine(bool shape) {
   const std::vector<Candidate> some = candidates(kLeastShare);
   if (some.empty()) return;
   JointProblem problem = problem_for(some);
   JointState state = state_for(some);
-  for (int round = 0; round < rounds; ++round) {
-    (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
-    estimate_noise(some, rounds > 1, problem, state);
-  }
+  (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
+  estimate_noise(some, shape, problem, state);
   (void)rfmvo::solve(problem, {.max_iterations = 10}, state);
   keep(some, state);
 }
@@ -162,16 +160,16 @@ void JointSegment::compute_covariance() {
   }
 }
 
-void JointSegment::iterate(bool thorough) {
+void JointSegment::iterate(Depth depth) {
   resize_knots();
-  place(thorough ? Effort::kAll : Effort::kNew);
-  // The more tags join, the better the path and the port offsets, and the fewer modes remain.
-  const int rounds = thorough ? 4 : 1;
+  place(depth == Depth::kLook ? Effort::kNew : Effort::kAll);
+  // The more tags are decided, the better the path and the port offsets, and the fewer modes remain.
+  const int rounds = depth == Depth::kLook ? 1 : depth == Depth::kAside ? 2 : 4;
   for (int round = 0; round < rounds; ++round) {
     if (round > 0) place(Effort::kRefresh);
     select();
-    refine(thorough ? 2 : 1);
-    if (thorough && round > 0) estimate_drift();
+    refine(depth == Depth::kFull && round < 3);
+    if (depth == Depth::kFull && round > 0) estimate_drift();
     compute_covariance();
   }
 }
@@ -180,7 +178,7 @@ void JointSegment::solve(bool thorough) {
   if (path_.poses().size() < 2 || path_.arc_V() <= 0.0 || tags_.empty()) return;
   if (thorough) next_start_arc_V_ = 0.0;
   if (!started_ && !start()) return;
-  iterate(thorough);
+  iterate(thorough ? Depth::kFull : Depth::kLook);
   if (thorough) consider_rivals();
   ++revision_;
   // A solution that the reads do not support, or whose scale is undecided, is searched for again.

@@ -20,12 +20,11 @@ constexpr double kSameMode_m = 0.03;
 constexpr double kMaxCostAbove = 40.0;
 constexpr std::size_t kMaxModes = 12;  // carried; a circle of positions has no end of them
 
-// Local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
+// The modes and more local maxima of the likelihood from the given places, duplicates and hopeless ones left out.
 std::vector<TagMode> refine_all(const std::vector<JointRead>& reads, const JointProblem& problem,
                                 const JointState& state, const TagState& like, const BeamModel& beams,
-                                const std::vector<Eigen::Vector3d>& places) {
+                                const std::vector<Eigen::Vector3d>& places, std::vector<TagMode> modes = {}) {
   TagLikelihood likelihood(reads, problem, state, like.structured_sigma_rad);
-  std::vector<TagMode> modes;
   for (const Eigen::Vector3d& place : places) {
     const TagLikelihood::Maximum top = likelihood.climb(place);
     const bool known = std::any_of(modes.begin(), modes.end(),
@@ -97,14 +96,12 @@ PossiblePlaces search_places(const std::vector<JointRead>& all, const JointState
 }
 
 // Where all ports together agree: the lobes of the whole aperture, which the incoherent spectrum does not show.
-std::vector<Eigen::Vector3d> coherent_places(const std::vector<SpectrumRead>& reads, const BeamModel& beams) {
+std::vector<SpectrumPeak> coherent_peaks(const std::vector<SpectrumRead>& reads, const BeamModel& beams) {
   constexpr double kFinest_m = 0.06, kWidest_m = 0.25;
-  constexpr int kPeaks = 32;
-  std::vector<Eigen::Vector3d> places;
-  for (const SpectrumPeak& peak : search_near_field(
-           reads, {.cell_m = suitable_cell(reads, kFinest_m, kWidest_m), .range_max_m = beams.range_max_m, .max_peaks = kPeaks}))
-    places.push_back(peak.p_W_X);
-  return places;
+  constexpr int kPeaks = 24;
+  return search_near_field(reads, {.cell_m = suitable_cell(reads, kFinest_m, kWidest_m),
+                                   .range_max_m = beams.range_max_m,
+                                   .max_peaks = kPeaks});
 }
 
 // Images of the modes that the antennas' places cannot tell from them: mirrored in the plane that the antennas moved in
@@ -137,19 +134,18 @@ std::vector<TagMode> find_modes(const JointProblem& problem, std::size_t index, 
                                 const BeamModel& beams, const std::vector<Eigen::Vector3d>& places, std::size_t count) {
   constexpr std::size_t kReads = 64;
   const std::vector<SpectrumRead> reads = spectrum_reads(problem.reads[index], state, beams, true, kReads);
-  std::vector<SpectrumPeak> ranked;
+  std::vector<SpectrumPeak> ranked = coherent_peaks(reads, beams);
   for (const Eigen::Vector3d& p : places) ranked.push_back({p, near_field_power(reads, p), 0.0});
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const SpectrumPeak& a, const SpectrumPeak& b) { return a.power > b.power; });
   if (ranked.size() > count) ranked.resize(count);
-  std::vector<Eigen::Vector3d> best = coherent_places(reads, beams);
+  std::vector<Eigen::Vector3d> best;
   for (const SpectrumPeak& peak : ranked) best.push_back(peak.p_W_X);
   std::vector<TagMode> modes = refine_all(problem.reads[index], problem, state, state.tags[index], beams, best);
   if (modes.empty()) return modes;
   // A grid may miss one of two places that fit alike: never leave its twin to chance.
-  std::vector<Eigen::Vector3d> twins = twin_places(reads, modes);
-  for (const TagMode& mode : modes) twins.push_back(mode.tag.p_W_X);
-  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, twins);
+  const std::vector<Eigen::Vector3d> twins = twin_places(reads, modes);
+  return refine_all(problem.reads[index], problem, state, state.tags[index], beams, twins, std::move(modes));
 }
 
 std::vector<TagMode> refresh_modes(const JointProblem& problem, std::size_t index, const JointState& state,
