@@ -57,7 +57,6 @@ struct KnotInterval {
 };
 
 struct JointPriors {
-  double log_scale = 0.0, log_scale_sigma = 10.0;
   double time_offset_sigma_s = 0.005;
   double electrical_length_m = 0.0, electrical_length_sigma_m = 10.0;
   std::vector<Eigen::Vector3d> lever_arm_C;      // per port

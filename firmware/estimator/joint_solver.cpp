@@ -256,10 +256,6 @@ SolverReport solve(const JointProblem& problem, const SolverOptions& options, Jo
 
 namespace {
 
-// Scale, port offsets and path have heavier tails than the curvature at the solution says: tags change lobes on the way
-// (profile of the evidence over ln(scale), S3: 3 nats down at 2.5 sigma, 5 at 3.4). 1 sigma of them counts this much.
-constexpr double kTails = 1.3;
-
 // Of `whole` less `missing`, or, where too much is missing for a quadratic, less as much of it as leaves a tenth.
 Eigen::MatrixXd inverse_without(const Eigen::MatrixXd& whole, const Eigen::MatrixXd& missing) {
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(whole.rows(), whole.cols());
@@ -277,7 +273,8 @@ Eigen::MatrixXd inverse_without(const Eigen::MatrixXd& whole, const Eigen::Matri
 
 }  // namespace
 
-JointCovariance covariance(const JointProblem& problem, const JointState& state, const Eigen::MatrixXd& missing) {
+JointCovariance covariance(const JointProblem& problem, const JointState& state, const Eigen::MatrixXd& missing,
+                           double tails) {
   const NormalEquations eq = build(problem, chains_of(problem, state), state, false);
   Eigen::MatrixXd S = eq.H;
   std::vector<Eigen::MatrixXd> gain(eq.tags.size());  // H_tt^-1 H_ts
@@ -289,7 +286,7 @@ JointCovariance covariance(const JointProblem& problem, const JointState& state,
   JointCovariance c;
   c.layout = eq.layout;
   c.information = S.selfadjointView<Eigen::Lower>();
-  c.shared = kTails * kTails * inverse_without(c.information, missing);
+  c.shared = tails * tails * inverse_without(c.information, missing);
   c.shared = (0.5 * (c.shared + c.shared.transpose())).eval();
   for (std::size_t t = 0; t < eq.tags.size(); ++t) {
     const Eigen::MatrixXd cross = gain[t] * c.shared;

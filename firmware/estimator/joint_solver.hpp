@@ -44,9 +44,10 @@ struct JointCovariance {
   std::vector<Eigen::MatrixXd> tag_shared;  // 4 x size()
 };
 // `missing` (size() x size(), or empty): what is not known of the shared states because modes are undecided, as
-// information: by Louis (1982) the covariance of the gradient over the modes.
+// information: by Louis (1982) the covariance of the gradient over the modes. `tails`: 1 sigma of the shared states
+// counts this much, in their own covariance and in what it does to the tags.
 [[nodiscard]] JointCovariance covariance(const JointProblem& problem, const JointState& state,
-                                         const Eigen::MatrixXd& missing = {});
+                                         const Eigen::MatrixXd& missing = {}, double tails = 1.0);
 
 // One tag (problem holds it alone) seen from the shared states: its own covariance with them fixed,
 // how it leans on them, and what its reads say of them once the tag itself is eliminated.

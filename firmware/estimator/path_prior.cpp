@@ -134,9 +134,6 @@ double add_path_prior(const JointProblem& problem, const JointState& state, cons
   double cost = 0.0;
   for (int k = 0; k + 1 < layout.knots; ++k) cost += add_interval(problem, state, layout, k, H, g);
 
-  Factor scale;
-  scale.add(SharedLayout::kLogScale, 1.0);
-  cost += scale.close(state.log_scale - priors.log_scale, priors.log_scale_sigma, H, g);
   Factor time;
   time.add(SharedLayout::kTimeOffset, 1.0);
   cost += time.close(state.time_offset_s, priors.time_offset_sigma_s, H, g);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 
 #include "estimator/phase_error_model.hpp"
@@ -32,6 +33,23 @@ TEST(StructuredCorrelation, RunsThroughWhatWasMeasured) {
 TEST(StructuredCorrelation, IsFlatAtTheOrigin) {
   // Matern 3/2 is once differentiable: 1 - a^2 / 2 to first order, where exp(-a) loses a.
   EXPECT_NEAR(matern32(0.01 * kLength_m, kLength_m), 1.0 - 0.5e-4, 1e-6);
+}
+
+TEST(StructuredCorrelation, OfLongEchoesLiesBetweenItsTwoParts) {
+  for (const double distance_m : {0.01, 0.05, 0.1, 0.3}) {
+    const double near = matern32(distance_m, kLength_m), far = matern32(distance_m, kLongLength_m);
+    EXPECT_EQ(structured_correlation(distance_m, {kLength_m, 0.0, 0.0}), near);
+    EXPECT_NEAR(structured_correlation(distance_m, {kLength_m, 0.0, 1.0}), far, 1e-15);
+    EXPECT_NEAR(structured_correlation(distance_m, {kLength_m, 0.0, 0.25}), 0.75 * near + 0.25 * far, 1e-15);
+  }
+}
+
+TEST(RelativeStrength, IsTheFieldLostToThePowerOfTheExponent) {
+  // 20 dB of power there and back are a factor of sqrt(10) one way.
+  EXPECT_EQ(relative_strength(20.0, {kLength_m, 0.0}), 1.0);
+  EXPECT_NEAR(relative_strength(20.0, {kLength_m, 1.0}), std::sqrt(10.0), 1e-12);
+  EXPECT_NEAR(relative_strength(20.0, {kLength_m, 0.5}), std::sqrt(std::sqrt(10.0)), 1e-12);
+  EXPECT_EQ(relative_strength(0.0, {kLength_m, 1.0}), 1.0);
 }
 
 TEST(WhiteSigma, GrowsAsTheSignalWeakensWithoutSteps) {

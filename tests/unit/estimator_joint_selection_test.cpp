@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
+
 #include "estimator/mode_selection.hpp"
 #include "unit/estimator_joint_scene.hpp"
 
@@ -104,4 +108,59 @@ TEST(LogMarginalLikelihood, OfExactPhasesFavoursLessDrift) {
 }
 
 }  // namespace
+// Each tag of `problem` twice, the copies counting a and 1 - a.
+JointProblem split(const JointProblem& problem, double a) {
+  JointProblem twice = problem;
+  twice.reads.clear();
+  for (const auto& reads : problem.reads)
+    for (const double share : {a, 1.0 - a}) {
+      twice.reads.push_back(reads);
+      twice.share.push_back(share);
+    }
+  return twice;
+}
+JointState split(const JointState& state) {
+  JointState twice = state;
+  twice.tags.clear();
+  for (const TagState& tag : state.tags) twice.tags.insert(twice.tags.end(), {tag, tag});
+  return twice;
+}
+
+TEST(Shares, TwoCopiesOfATagAreWorthOne) {
+  const Solved s = solved_world(3);
+  const JointCovariance twice = covariance(split(s.world.problem, 0.3), split(s.state));
+  EXPECT_LT((twice.information - s.covariance.information).norm(), 1e-9 * s.covariance.information.norm());
+  for (std::size_t t = 0; t < 3; ++t)
+    EXPECT_LT((twice.tag[2 * t] - s.covariance.tag[t]).norm(), 1e-6 * s.covariance.tag[t].norm()) << t;
+  EXPECT_NEAR(total_cost(split(s.world.problem, 0.3), split(s.state)), total_cost(s.world.problem, s.state), 1e-9);
+}
+
+TEST(Shares, ALikelihoodOverTwoPlacesAsGoodIsThatOfOneAndTheirEntropy) {
+  const Solved s = solved_world(3);
+  const double one = log_marginal_likelihood(s.world.problem, s.state);
+  for (const double a : {0.5, 0.1}) {
+    const double entropy = -a * std::log(a) - (1.0 - a) * std::log(1.0 - a);
+    EXPECT_NEAR(log_marginal_likelihood(split(s.world.problem, a), split(s.state)), one + 3.0 * entropy, 1e-6) << a;
+  }
+}
+
+TEST(MissingInformation, WidensTheCovarianceAndNeverTakesMoreThanThereIs) {
+  const Solved s = solved_world(4);
+  const auto size = s.covariance.information.rows();
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd pull(size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    pull[i] = normal(random) * std::sqrt(s.covariance.information(i, i));
+  for (const double strength : {1e-3, 1.0, 1e3}) {
+    const Eigen::MatrixXd missing = strength * pull * pull.transpose();
+    const JointCovariance less = covariance(s.world.problem, s.state, missing);
+    const Eigen::MatrixXd wider = less.shared - s.covariance.shared;
+    const double scale = s.covariance.shared.norm();
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(wider).eigenvalues()[0], -1e-6 * scale) << strength;
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(less.shared).eigenvalues()[0], 0.0) << strength;
+    EXPECT_EQ(less.information, s.covariance.information);
+  }
+}
+
 }  // namespace rfmvo
