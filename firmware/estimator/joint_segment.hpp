@@ -12,6 +12,7 @@
 #include "estimator/joint_start.hpp"
 #include "estimator/odometry_path.hpp"
 #include "estimator/sampling_synchronization.hpp"
+#include "estimator/structured_strength.hpp"
 #include "estimator/tag_modes.hpp"
 #include "rf/epc.hpp"
 
@@ -137,6 +138,7 @@ class JointSegment {
   std::vector<JointSegment> rivals_;  // other solutions, nearly as likely
   double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
   StructuredShape structured_;
+  Misreads misreads_;
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show
   double scale_walk_per_sqrt_m_ = 0.0, rotation_walk_rad_per_sqrt_m_ = 0.0, position_walk_m_per_sqrt_m_ = 0.0;
   double knot_spacing_V_ = 1.0;

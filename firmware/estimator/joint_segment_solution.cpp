@@ -97,6 +97,11 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
     }
   if (shape) structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
   estimate_structured_strength(known, strength, of_known);
+  if (shape) {
+    misreads_ = estimate_misreads(known, of_known, {config_.joint.flip_probability, config_.joint.outlier_probability});
+    problem.flip_probability = misreads_.flips;
+    problem.outlier_probability = misreads_.outliers;
+  }
   if (shape) structured_ = estimate_correlation(known, of_known, config_.joint.correlation_length_m);
   problem.structured = structured_;
   double typical = 0.0;

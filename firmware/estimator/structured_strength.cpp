@@ -84,6 +84,22 @@ void estimate_structured_strength(const JointProblem& problem, const StrengthOpt
   }
 }
 
+Misreads estimate_misreads(const JointProblem& problem, const JointState& state, const Misreads& usual) {
+  constexpr double kUsualReads = 100.0, kMost = 0.5;
+  Misreads sum{usual.flips * kUsualReads, usual.outliers * kUsualReads};
+  double reads = kUsualReads;
+  WhitenedTag whitened;
+  for (std::size_t t = 0; t < problem.reads.size(); ++t) {
+    whiten(problem.reads[t], problem, state, state.tags[t], false, whitened);
+    for (const WhitenedRow& row : whitened.rows) {
+      sum.outliers += 1.0 - row.weight;
+      sum.flips += row.flipped ? row.weight : 0.0;
+      reads += 1.0;
+    }
+  }
+  return {std::min(kMost, sum.flips / reads), std::min(kMost, sum.outliers / reads)};
+}
+
 double estimate_fade_exponent(JointProblem problem, const JointState& state, const StrengthOptions& options) {
   constexpr std::array<double, 7> kExponents{0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5};
   std::array<double, kExponents.size()> l{};

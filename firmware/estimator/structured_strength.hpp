@@ -16,6 +16,13 @@ struct StrengthOptions {
 // Writes structured_sigma_rad of every tag in state.
 void estimate_structured_strength(const JointProblem& problem, const StrengthOptions& options, JointState& state);
 
+// Shares of reads that are flipped by pi and that tell nothing, as the residuals show; weighed against what is usual
+// as if that had been seen in `kUsualReads` reads.
+struct Misreads {
+  double flips = 0.003, outliers = 0.01;
+};
+[[nodiscard]] Misreads estimate_misreads(const JointProblem& problem, const JointState& state, const Misreads& usual);
+
 // How much stronger the error is where a tag answers weakly: what suits all tags' residuals best, whatever the
 // site's strength.
 [[nodiscard]] double estimate_fade_exponent(JointProblem problem, const JointState& state,
