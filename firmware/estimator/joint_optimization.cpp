@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/units.hpp"
-#include "estimator/line_intersection.hpp"
 #include "estimator/spatial_power_spectrum.hpp"
 
 namespace rfmvo {
@@ -16,7 +15,6 @@ constexpr double kConverged_m = 1e-4;     // move of X_T between two outer itera
 constexpr double kConvergedScale = 1e-4;  // relative move of gamma
 constexpr int kMaxSteps = 50;             // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
-constexpr double kMaxRange_m = 20.0;      // no passive UHF tag answers from farther
 constexpr double kRunaway_m = 1e4;        // X_T goes to infinity where the data say "plane wave"
 constexpr double kMinDistance_m = 1e-3;   // keeps the bearing of a tag on an antenna defined
 constexpr double kUnknownSigma_m = 10.0;  // 1 sigma of a direction the data say nothing about
@@ -104,22 +102,6 @@ State minimise(std::span<const AntennaTerm> antennas, const Eigen::VectorXd& mea
   return state;
 }
 
-// Eq. (17): the nearest point to the M x L lines along the averaged directions.
-LineIntersection intersect(std::span<const AntennaTerm> antennas, std::span<const IncidentAngles> angles, double gamma,
-                           bool sphere) {
-  std::vector<Line> lines;
-  for (std::size_t j = 0; j < antennas.size(); ++j) {
-    const AntennaArray& array = antennas[j].array;
-    for (Eigen::Index i = 0; i < array.elements(); ++i) {
-      AngleSums sums = antennas[j].others[static_cast<std::size_t>(i)];
-      sums.add(angles[j], array.R_V_D);
-      const Eigen::Vector3d u = sphere ? sums.mean_direction_V() : array.R_V_D * direction_of(sums.mean_angles());
-      lines.push_back({array.position_m(i, gamma), u});
-    }
-  }
-  return nearest_point(lines);
-}
-
 // sigma^2 (J'J)^-1 of (X_T, gamma). Directions without information get the stated ignorance instead of
 // infinity: it is added as information.
 Eigen::Matrix4d covariance_of(const DistanceResiduals& residuals, double sigma_m, double gamma) {
@@ -161,6 +143,22 @@ DistanceResiduals distance_residuals(std::span<const AntennaTerm> antennas, cons
   return out;
 }
 
+LineIntersection intersect_lines(std::span<const AntennaTerm> antennas, std::span<const IncidentAngles> angles,
+                                 double gamma, bool fix_sphere_average) {
+  std::vector<Line> lines;
+  for (std::size_t j = 0; j < antennas.size(); ++j) {
+    const AntennaArray& array = antennas[j].array;
+    for (Eigen::Index i = 0; i < array.elements(); ++i) {
+      AngleSums sums = antennas[j].others[static_cast<std::size_t>(i)];
+      sums.add(angles[j], array.R_V_D);
+      const Eigen::Vector3d u =
+          fix_sphere_average ? sums.mean_direction_V() : array.R_V_D * direction_of(sums.mean_angles());
+      lines.push_back({array.position_m(i, gamma), u});
+    }
+  }
+  return nearest_point(lines);
+}
+
 ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double gamma, const JointOptions& options) {
   ArraySolution solution;
   State state{Eigen::Vector3d::Zero(), gamma};
@@ -170,7 +168,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
     for (std::size_t j = 0; j < antennas.size(); ++j)  // Eq. (16)
       solution.angles[j] = refine_angles(antennas[j].array, solution.angles[j], state.gamma, options.refine_step_rad,
                                          options.refine_range_rad);
-    const LineIntersection start = intersect(antennas, solution.angles, state.gamma, options.fix_sphere_average);
+    const LineIntersection start = intersect_lines(antennas, solution.angles, state.gamma, options.fix_sphere_average);
     state.p_X_m = start.point;
     if (!start.determined || !sane(state)) return solution;
     state = minimise(antennas, measured_steps(antennas, state, options.fix_cycles), state);  // Eq. (18)
@@ -186,7 +184,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
   solution.covariance = covariance_of(residuals, solution.sigma_m, state.gamma);
   solution.p_X_m = state.p_X_m;
   solution.gamma = state.gamma;
-  solution.found = sane(state) && solution.converged && state.p_X_m.norm() < kMaxRange_m;
+  solution.found = sane(state) && solution.converged && state.p_X_m.norm() < kMaxTagRange_m;
   return solution;
 }
 
