@@ -42,13 +42,18 @@ double longest(const Eigen::Array<double, Eigen::Dynamic, 3>& rows) { return row
 
 DirectionGrid::DirectionGrid(std::vector<double> alpha_rad, std::vector<double> beta_rad)
     : alpha_rad_(std::move(alpha_rad)), beta_rad_(std::move(beta_rad)) {
-  for (const double alpha : alpha_rad_) {
+  for (std::vector<float>* axis : {&x_, &y_, &z_}) axis->reserve(alpha_rad_.size() * beta_rad_.size());
+  std::vector<double> cos_beta, sin_beta;
+  for (const double beta : beta_rad_) {
+    cos_beta.push_back(std::cos(beta));
+    sin_beta.push_back(std::sin(beta));
+  }
+  for (const double alpha : alpha_rad_) {  // Eq. (15)
     const double cos_alpha = std::cos(alpha), sin_alpha = std::sin(alpha);
-    for (const double beta : beta_rad_) {  // Eq. (15)
-      const double cos_beta = std::cos(beta);
-      x_.push_back(static_cast<float>(cos_alpha * cos_beta));
-      y_.push_back(static_cast<float>(sin_alpha * cos_beta));
-      z_.push_back(static_cast<float>(std::sin(beta)));
+    for (std::size_t b = 0; b < beta_rad_.size(); ++b) {
+      x_.push_back(static_cast<float>(cos_alpha * cos_beta[b]));
+      y_.push_back(static_cast<float>(sin_alpha * cos_beta[b]));
+      z_.push_back(static_cast<float>(sin_beta[b]));
     }
   }
 }

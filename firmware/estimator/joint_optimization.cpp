@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.hpp"
+#include "estimator/distance_steps.hpp"
 #include "estimator/spatial_power_spectrum.hpp"
 
 namespace rfmvo {
@@ -16,7 +17,6 @@ constexpr double kConvergedScale = 1e-4;  // relative move of gamma
 constexpr int kMaxSteps = 50;             // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
 constexpr double kRunaway_m = 1e4;        // X_T goes to infinity where the data say "plane wave"
-constexpr double kMinDistance_m = 1e-3;   // keeps the bearing of a tag on an antenna defined
 constexpr double kUnknownSigma_m = 10.0;  // 1 sigma of a direction the data say nothing about
 constexpr double kUnknownLogScale = 1.0;  // same for the scale, relative
 
@@ -38,7 +38,7 @@ struct Distance {
 };
 Distance distance(const AntennaArray& array, Eigen::Index i, const State& state) {
   const Eigen::Vector3d d = state.p_X_m - array.position_m(i, state.gamma);
-  const double value = std::max(d.norm(), kMinDistance_m);
+  const double value = std::max(d.norm(), kMinTagDistance_m);
   Distance result{value, {}};
   result.derivative.head<3>() = d.transpose() / value;
   result.derivative(3) = -d.dot(array.camera_V.col(i)) / value;
@@ -78,24 +78,23 @@ bool sane(const State& state) {
 // Eq. (18) by Levenberg-Marquardt with Marquardt's scaling. The norm of a scalar in Eq. (18) is read
 // as its square: the method minimises squares.
 State minimise(std::span<const AntennaTerm> antennas, const Eigen::VectorXd& measured, State state) {
-  DistanceResiduals now = distance_residuals(antennas, measured, state.p_X_m, state.gamma);
-  double cost = now.r_m.squaredNorm();
+  std::vector<const AntennaArray*> arrays;
+  for (const AntennaTerm& term : antennas) arrays.push_back(&term.array);
+  DistanceSteps steps(arrays, measured);
+  NormalEquations now = steps.at(state.p_X_m, state.gamma);
   double damping = 1e-3;
   for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
-    Eigen::Matrix4d normal = now.jacobian.transpose() * now.jacobian;
-    const Eigen::Vector4d gradient = now.jacobian.transpose() * now.r_m;
+    Eigen::Matrix4d normal = now.matrix;
     normal.diagonal() += damping * normal.diagonal().cwiseMax(1e-12);
-    const Eigen::Vector4d move = -normal.ldlt().solve(gradient);
+    const Eigen::Vector4d move = -normal.ldlt().solve(now.gradient);
     const State trial{state.p_X_m + move.head<3>(), state.gamma + move(3)};
     damping *= 10.0;
     if (!sane(trial)) continue;
-    DistanceResiduals next = distance_residuals(antennas, measured, trial.p_X_m, trial.gamma);
-    const double next_cost = next.r_m.squaredNorm();
-    if (!(next_cost < cost)) continue;
-    const bool done = cost - next_cost < 1e-10 * cost;
+    const NormalEquations next = steps.at(trial.p_X_m, trial.gamma);
+    if (!(next.cost < now.cost)) continue;
+    const bool done = now.cost - next.cost < 1e-10 * now.cost;
     state = trial;
-    now = std::move(next);
-    cost = next_cost;
+    now = next;
     damping = std::max(damping * 1e-2, 1e-9);
     if (done) break;
   }

@@ -35,7 +35,7 @@ Status run(const Arguments& arguments) {
   const fs::path json = folder / "reproduction.json", page_file = folder / "reproduction.html";
   const Status written = write_whole_file(json.string(), reproduce::to_json(arguments.options, results.value()));
   if (!written) return written;
-  const auto page = reproduce::make_page(arguments.options, results.value());
+  const auto page = reproduce::make_page(results.value());
   if (!page) return page.error();
   if (const Status s = write_whole_file(page_file.string(), page.value()); !s) return s;
   std::printf("page: %s\nnumbers: %s\n", page_file.c_str(), json.c_str());
@@ -55,7 +55,7 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--first-seed", options.first_seed, "Seed of the first run")->capture_default_str();
   command->add_option("--sweep-runs", options.sweep_runs, "Of these for figures 11 to 13")
-      ->check(CLI::Range(std::size_t{1}, kMaxRuns))
+      ->check(CLI::Range(std::size_t{0}, kMaxRuns))
       ->capture_default_str();
   command->add_option("--tags", options.tags, "Number of tags (default: the scene's eight)")
       ->check(CLI::Range(std::size_t{1}, kMaxTags));

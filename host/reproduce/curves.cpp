@@ -92,6 +92,7 @@ std::vector<std::pair<double, double>> distribution(std::vector<double> values, 
   std::sort(values.begin(), values.end());
   std::vector<std::pair<double, double>> points;
   const std::size_t step = values.size() / kMaxPoints + 1;
+  if (!values.empty()) points.emplace_back(values.front(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (i % step == 0 || i + 1 == values.size())
       points.emplace_back(values[i], static_cast<double>(i + 1) / static_cast<double>(all));
@@ -101,10 +102,13 @@ std::vector<std::pair<double, double>> distribution(std::vector<double> values, 
 std::optional<report::Plot> plot_of(const FigureData& figure) {
   report::Script script;
   std::vector<report::LegendEntry> legend;
-  for (const Curve& curve : figure.curves)
-    if (script.add({data_of(curve), style_of(curve)}))
-      legend.push_back({curve.colour->css, symbol_of(curve), curve.title});
-  if (legend.empty()) return std::nullopt;
+  bool drawn = false;
+  for (const Curve& curve : figure.curves) {
+    const bool any = script.add({data_of(curve), style_of(curve)});
+    legend.push_back({curve.colour->css, any ? symbol_of(curve) : "·", curve.title + (any ? "" : ": no answer")});
+    drawn = drawn || any;
+  }
+  if (!drawn) return std::nullopt;
   report::Plot plot{.name = figure.id,
                     .title = figure.heading,
                     .width = kWidth,

@@ -63,6 +63,20 @@ Json sweeps_json(const std::vector<Sweep>& sweeps) {
   return list;
 }
 
+Json conditions_json(const std::vector<Condition>& conditions) {
+  Json list = Json::array();
+  for (const Condition& c : conditions) {
+    Json json{{"name", c.name}, {"tags", c.tags}};
+    for (const auto& [key, side] : {std::pair("paper", &c.paper), std::pair("repaired", &c.repaired)})
+      json[key] = {{"located", side->located},
+                   {"within_15_cm", side->good},
+                   {"tag_error_median_m", number(side->tag_error_median_m)},
+                   {"scale_relative_median", number(side->scale_relative_median)}};
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 Json fate_json(const Fate& fate) {
   return {{"tags", fate.tags},
           {"tags_with_enough_reads", fate.tags_with_enough_reads},
@@ -116,6 +130,7 @@ std::string to_json(const Options& options, const Results& results) {
               {"images", options.images_dir.empty() ? Json(nullptr) : Json(options.images_dir)}}}};
   json.update(study_json(results.wall, figures_of(results)));
   json["sweeps"] = sweeps_json(results.sweeps);
+  json["conditions"] = conditions_json(results.conditions);
   json["run_times"] = Json::array();
   for (const RunTime& time : results.run_times)
     json["run_times"].push_back({{"what", time.what},

@@ -13,7 +13,7 @@ namespace {
 
 using report::escape;
 
-std::string header(const Options& options, const Results& results) {
+std::string header(const Results& results) {
   return fmt::format(
       "<header><h1>RF-MVO, reproduced</h1>\n<p>The evaluation of “RF-MVO: Simultaneous 3D Object Localization and "
       "Camera "
@@ -77,10 +77,10 @@ Status add_figures(const std::vector<FigureData>& figures, std::string& body) {
 
 }  // namespace
 
-Result<std::string> make_page(const Options& options, const Results& results) {
-  std::string body = header(options, results) + summary_section(results.wall, "Published and measured");
+Result<std::string> make_page(const Results& results) {
+  std::string body = header(results) + summary_section(results.wall, "Published and measured");
   if (const Status s = add_figures(figures_of(results), body); !s) return s.error();
-  body += reasons_section(results.wall) + run_times_section(results.run_times);
+  body += reasons_section(results) + run_times_section(results.run_times);
   if (results.real_frames) {
     body += summary_section(*results.real_frames,
                             fmt::format("On real frames ({} runs)", results.real_frames->runs.size()));

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "base/result.hpp"
-#include "reproduce/study.hpp"
+#include "reproduce/results.hpp"
 
 namespace rfmvo::reproduce {
 
 // Errors: gnuplot.
-[[nodiscard]] Result<std::string> make_page(const Options& options, const Results& results);
+[[nodiscard]] Result<std::string> make_page(const Results& results);
 
 }  // namespace rfmvo::reproduce

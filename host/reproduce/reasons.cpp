@@ -6,6 +6,7 @@
 
 #include "base/units.hpp"
 #include "evaluate/evaluation.hpp"
+#include "report/html.hpp"
 
 namespace rfmvo::reproduce {
 namespace {
@@ -91,6 +92,28 @@ std::string causes_of(const Fate& fate) {
   return text + "</ol>\n";
 }
 
+std::string side_cells(const Condition& condition, const Condition::Side& side) {
+  const auto value = [](const std::optional<double>& v, double factor) {
+    return v ? fmt::format("<td>{:.1f}</td>", factor * *v) : std::string("<td>–</td>");
+  };
+  return fmt::format("<td>{} of {}</td><td>{}</td>", side.located, condition.tags, side.good) +
+         value(side.tag_error_median_m, 100.0) + value(side.scale_relative_median, 100.0);
+}
+
+std::string conditions_table(const Results& results) {
+  if (results.conditions.empty()) return "";
+  std::string text = fmt::format(
+      "<h2>The same, made easier</h2>\n<p>With joint optimization, {} runs: tags located, of them within 15 cm, median "
+      "of their errors (cm), median scale error (%).</p>\n<div class=\"scroll\"><table><thead><tr><th "
+      "class=\"text\">Wall</th><th>to the letter</th><th>&lt; 15 cm</th><th>cm</th><th>%</th><th>repaired</th><th>&lt; "
+      "15 cm</th><th>cm</th><th>%</th></tr></thead><tbody>\n",
+      results.sweep_runs);
+  for (const Condition& c : results.conditions)
+    text += fmt::format("<tr><td class=\"text\">{}</td>{}{}</tr>\n", report::escape(c.name), side_cells(c, c.paper),
+                        side_cells(c, c.repaired));
+  return text + "</tbody></table></div>\n";
+}
+
 }  // namespace
 
 Fate fate_of(const Study& study, PaperRun Run::*variant) {
@@ -117,11 +140,11 @@ Fate fate_of(const Study& study, PaperRun Run::*variant) {
   return fate;
 }
 
-std::string reasons_section(const Study& study) {
-  const Fate letter = fate_of(study, &Run::paper), repaired = fate_of(study, &Run::repaired);
-  // Arrays exist in one of them at least where there is anything to say of their length.
+std::string reasons_section(const Results& results) {
+  const Fate letter = fate_of(results.wall, &Run::paper), repaired = fate_of(results.wall, &Run::repaired);
   return "<section class=\"long\"><h2>Where the paper's method fails on these runs, and why</h2>\n" +
-         table_of(letter, repaired) + causes_of(repaired.travel_m > 0.0 ? repaired : letter) + "</section>\n";
+         table_of(letter, repaired) + causes_of(repaired.travel_m > 0.0 ? repaired : letter) +
+         conditions_table(results) + "</section>\n";
 }
 
 }  // namespace rfmvo::reproduce

@@ -20,11 +20,10 @@ struct Fate {
   // 2 pi (r - d) 2 / lambda at the ends of an array of this travel and distance: what the plane wave of Eq. (1) misses.
   double curvature_rad = 0.0;
 };
-inline constexpr double kGood_m = 0.15;
 
 [[nodiscard]] Fate fate_of(const Study& study, PaperRun Run::*variant);
 
 // HTML: what happened, and the physics behind it.
-[[nodiscard]] std::string reasons_section(const Study& study);
+[[nodiscard]] std::string reasons_section(const Results& results);
 
 }  // namespace rfmvo::reproduce

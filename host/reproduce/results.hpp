@@ -76,7 +76,7 @@ struct Run {
   std::vector<std::optional<double>> joint_error_m;  // by tag; located ones
   std::vector<ScaleError> joint_scale;
   std::vector<Eigen::Vector3d> joint_path_m, true_path_m;  // in W
-  double joint_cpu_s = 0.0, joint_read_mean_s = 0.0, joint_read_p99_s = 0.0;
+  double joint_cpu_s = 0.0;
   std::vector<std::optional<BaselineTag>> tagoram, mobitagbot;  // by tag; nothing: fewer than two reads
   double tagoram_cpu_s = 0.0, mobitagbot_cpu_s = 0.0;
 };
@@ -102,6 +102,17 @@ struct Sweep {
   std::vector<SweepPoint> paper, repaired;
 };
 
+// The paper's estimator on the wall made easier, step by step.
+struct Condition {
+  std::string name;
+  std::size_t tags = 0;
+  struct Side {
+    std::size_t located = 0, good = 0;                                // of the tags; within kGood_m
+    std::optional<double> tag_error_median_m, scale_relative_median;  // optimized; of the tags, of the path
+  } paper, repaired;
+};
+inline constexpr double kGood_m = 0.15;
+
 // Seconds of one core.
 struct RunTime {
   std::string what, paper;  // what is timed; the paper's figure as text, empty: none
@@ -119,6 +130,7 @@ struct Results {
   std::optional<Study> real_frames;
   std::vector<Sweep> sweeps;  // Fig. 11, 12, 13; on the first runs of the wall
   std::size_t sweep_runs = 0;
+  std::vector<Condition> conditions;  // on as many runs
   std::vector<RunTime> run_times;
 };
 

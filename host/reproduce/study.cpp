@@ -1,7 +1,6 @@
 #include "reproduce/study.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 #include "baselines/known_reads.hpp"
@@ -11,6 +10,7 @@
 #include "evaluate/last_estimates.hpp"
 #include "montecarlo/cpu_time.hpp"
 #include "montecarlo/recording.hpp"
+#include "reproduce/conditions.hpp"
 #include "reproduce/paper_run.hpp"
 #include "reproduce/run_times.hpp"
 #include "reproduce/scale_windows.hpp"
@@ -54,10 +54,6 @@ Status add_joint(const montecarlo::Recording& recording, Run& run) {
   run.joint_cpu_s = timing.cpu_s;
   run.span_s = timing.span_s;
   run.reads = timing.read_s.size();
-  if (timing.read_s.empty()) return Done{};
-  run.joint_read_mean_s = std::accumulate(timing.read_s.begin(), timing.read_s.end(), 0.0) / timing.read_s.size();
-  std::sort(timing.read_s.begin(), timing.read_s.end());
-  run.joint_read_p99_s = timing.read_s[(timing.read_s.size() - 1) * 99 / 100];
   return Done{};
 }
 
@@ -130,7 +126,8 @@ Result<Study> study(const Scene& scene, const Options& options, Counter& counter
 }
 
 Status add_sweeps(const Scene& wall, const Options& options, Counter& counter, Results& results) {
-  results.sweep_runs = std::min(options.sweep_runs, options.runs);
+  results.sweeps = empty_sweeps();
+  if (results.sweep_runs == 0) return Done{};
   std::vector<montecarlo::Recording> recordings;
   for (std::size_t i = 0; i < results.sweep_runs; ++i) {
     auto recording = record(wall, options.first_seed + i);
@@ -139,7 +136,6 @@ Status add_sweeps(const Scene& wall, const Options& options, Counter& counter, R
   }
   const auto config = config_of(recordings.front(), "paper");
   if (!config) return config.error();
-  results.sweeps = empty_sweeps();
   const std::size_t points = sweep_points(results.sweeps);
   return montecarlo::in_parallel(
       points, options.jobs,
@@ -150,6 +146,25 @@ Status add_sweeps(const Scene& wall, const Options& options, Counter& counter, R
       counter.next(points));
 }
 
+Status add_conditions(const Scene& wall, const Options& options, Counter& counter, Results& results) {
+  if (results.sweep_runs == 0) return Done{};
+  results.conditions = empty_conditions();
+  const auto work = [&](std::size_t n) -> Status {
+    ConditionRuns runs;
+    for (std::size_t i = 0; i < results.sweep_runs; ++i) {
+      const auto recording = record({simulation_of(n, wall.simulation), {}}, options.first_seed + i);
+      if (!recording) return recording.error();
+      const auto paper = config_of(recording.value(), "paper");
+      if (!paper) return paper.error();
+      runs.add(recording.value(), paper.value());
+    }
+    runs.finish(results.conditions[n]);
+    return Done{};
+  };
+  const std::size_t count = results.conditions.size();
+  return montecarlo::in_parallel(count, options.jobs, work, counter.next(count));
+}
+
 }  // namespace
 
 Result<Results> reproduce(const Options& options, const montecarlo::Progress& progress) {
@@ -157,12 +172,15 @@ Result<Results> reproduce(const Options& options, const montecarlo::Progress& pr
   wall.simulation.scene = "wall";
   wall.simulation.tags = options.tags;
   const bool frames = !options.images_dir.empty();
-  Counter counter(options.runs * (frames ? 2 : 1) + sweep_points(empty_sweeps()), progress);
   Results results;
+  results.sweep_runs = std::min(options.sweep_runs, options.runs);
+  const std::size_t settings = results.sweep_runs == 0 ? 0 : sweep_points(empty_sweeps()) + empty_conditions().size();
+  Counter counter(options.runs * (frames ? 2 : 1) + settings, progress);
   auto wall_study = study(wall, options, counter);
   if (!wall_study) return wall_study.error();
   results.wall = std::move(wall_study).value();
   if (const Status s = add_sweeps(wall, options, counter, results); !s) return s.error();
+  if (const Status s = add_conditions(wall, options, counter, results); !s) return s.error();
   if (frames) {
     Scene real;
     real.simulation.images_dir = options.images_dir;

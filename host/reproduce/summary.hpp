@@ -14,8 +14,7 @@ namespace rfmvo::reproduce {
 enum class Column : std::uint8_t { kPaper, kRepaired, kJoint, kTagoram, kMobiTagbot };
 inline constexpr std::size_t kColumns = 5;
 inline constexpr std::array<const char*, kColumns> kColumnKeys{"paper", "repaired", "joint", "tagoram", "mobitagbot"};
-inline constexpr std::array<const char*, kColumns> kColumnTitles{"paper, to the letter", "paper, repaired", "joint",
-                                                                 "Tagoram", "MobiTagbot"};
+inline constexpr std::array<const char*, kColumns> kColumnTitles{"paper", "repaired", "joint", "Tagoram", "MobiTagbot"};
 
 struct SummaryRow {
   std::string id, quantity, unit;
