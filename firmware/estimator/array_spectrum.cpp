@@ -126,7 +126,7 @@ std::vector<GridPeak> ArraySpectrum::peaks(const DirectionGrid& grid, const Gamm
     kernel.evaluate(grid.directions(), begin, end, sums);
     for (int n = begin; n < end; ++n) {
       const std::int32_t* row = &sums[grid.size() * static_cast<std::size_t>(n - begin)];
-      const double within = 4.0 * kernel.max_abs_error(n) * kOne_q15 * kernel.steps();  // 2 e
+      const double within = 2.8 * kernel.max_abs_error(n) * kOne_q15 * kernel.steps();  // 2 e
       const double least = *std::max_element(row, row + grid.size()) - within;
       hold(scales.at(n));
       for (std::size_t d = 0; d < grid.size(); ++d)

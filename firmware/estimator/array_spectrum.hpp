@@ -1,10 +1,10 @@
 // The spatial power spectrum of one antenna array, Eq. (6), and its peaks on a grid of directions.
 //
-// The fixed-point kernel sifts the grid, double decides. The kernel's power is within max_abs_error of the one
-// that its steps stand for; half a code of rounded phases (pi / 65536, below kCosineMaxAbsError) and the directions
-// in float (one rounding of the angle, of the six that the bound counts) stay below as much again. With
-// e = 2 max_abs_error, a direction whose fixed-point power is more than 2 e below the best cannot be the peak.
-// The few others are evaluated in double, so that the peak is that of the whole grid in double.
+// The fixed-point kernel sifts the grid, double decides. The kernel's power is within max_abs_error of the one that its
+// steps stand for. Beyond it: phases are rounded to half a code, pi / 65536 or 0.32 kCosineMaxAbsError, and directions
+// to float, one rounding of the angle of the six that the bound counts. With e = 1.4 max_abs_error, a direction whose
+// fixed-point power is more than 2 e below the best cannot be the peak. The few others are evaluated in double,
+// so that the peak is that of the whole grid in double.
 #pragma once
 
 #include <Eigen/Core>

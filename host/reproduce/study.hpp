@@ -12,9 +12,9 @@ struct Options {
   std::size_t runs = 30;
   std::size_t jobs = 2;  // the results do not depend on it, run times aside
   std::uint64_t first_seed = 1;
-  std::size_t sweep_runs = 10;  // runs that Fig. 11 to 13 and the easier walls are measured on
-  std::size_t tags = 0;         // 0: the scene's own eight
-  std::string images_dir;       // of a real image sequence; empty: the wall only
+  std::size_t sweep_runs = 5;  // runs that Fig. 11 to 13 and the easier walls are measured on
+  std::size_t tags = 0;        // 0: the scene's own eight
+  std::string images_dir;      // of a real image sequence; empty: the wall only
 };
 
 // Errors: as simulate(); the images.
