@@ -111,7 +111,12 @@ std::string conditions_table(const Results& results) {
   for (const Condition& c : results.conditions)
     text += fmt::format("<tr><td class=\"text\">{}</td>{}{}</tr>\n", report::escape(c.name), side_cells(c, c.paper),
                         side_cells(c, c.repaired));
-  return text + "</tbody></table></div>\n";
+  return text +
+         "</tbody></table></div>\n<p>Errors of phase and path are not what stops it: what is left without them are the "
+         "plane "
+         "wave over a long array (eight tags share the reader's time), and over a short one the range that a plane "
+         "wave "
+         "does not see.</p>\n";
 }
 
 }  // namespace

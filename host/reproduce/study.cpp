@@ -21,6 +21,7 @@ namespace {
 
 struct Scene {
   simulate::Options simulation;
+  std::int64_t array_stride = 1;
   std::vector<CameraPose> odometry;  // from real frames; empty: simulated poses
 };
 
@@ -34,6 +35,14 @@ Result<Config> config_of(const montecarlo::Recording& recording, const char* est
   montecarlo::Options options;
   options.estimator = estimator;
   return montecarlo::config_for(std::get<Start>(recording.events.front()).config, options);
+}
+
+Result<Config> paper_config_of(const montecarlo::Recording& recording, std::int64_t array_stride) {
+  auto made = config_of(recording, "paper");
+  if (!made) return made.error();
+  Config config = std::move(made).value();
+  config.paper.array_stride = array_stride;
+  return config;
 }
 
 Status add_joint(const montecarlo::Recording& recording, Run& run) {
@@ -77,7 +86,7 @@ double add_baseline(const montecarlo::Recording& recording, Locate locate,
 Result<Run> run_seed(const Scene& scene, std::uint64_t seed) {
   const auto recording = record(scene, seed);
   if (!recording) return recording.error();
-  const auto paper = config_of(recording.value(), "paper");
+  const auto paper = paper_config_of(recording.value(), scene.array_stride);
   if (!paper) return paper.error();
   Config repaired = paper.value();
   repair(repaired.paper);
@@ -134,7 +143,7 @@ Status add_sweeps(const Scene& wall, const Options& options, Counter& counter, R
     if (!recording) return recording.error();
     recordings.push_back(std::move(recording).value());
   }
-  const auto config = config_of(recordings.front(), "paper");
+  const auto config = paper_config_of(recordings.front(), options.array_stride);
   if (!config) return config.error();
   const std::size_t points = sweep_points(results.sweeps);
   return montecarlo::in_parallel(
@@ -152,9 +161,10 @@ Status add_conditions(const Scene& wall, const Options& options, Counter& counte
   const auto work = [&](std::size_t n) -> Status {
     ConditionRuns runs;
     for (std::size_t i = 0; i < results.sweep_runs; ++i) {
-      const auto recording = record({simulation_of(n, wall.simulation), {}}, options.first_seed + i);
+      const auto recording =
+          record({simulation_of(n, wall.simulation), options.array_stride, {}}, options.first_seed + i);
       if (!recording) return recording.error();
-      const auto paper = config_of(recording.value(), "paper");
+      const auto paper = paper_config_of(recording.value(), options.array_stride);
       if (!paper) return paper.error();
       runs.add(recording.value(), paper.value());
     }
@@ -169,6 +179,7 @@ Status add_conditions(const Scene& wall, const Options& options, Counter& counte
 
 Result<Results> reproduce(const Options& options, const montecarlo::Progress& progress) {
   Scene wall;
+  wall.array_stride = options.array_stride;
   wall.simulation.scene = "wall";
   wall.simulation.tags = options.tags;
   const bool frames = !options.images_dir.empty();
@@ -183,6 +194,7 @@ Result<Results> reproduce(const Options& options, const montecarlo::Progress& pr
   if (const Status s = add_conditions(wall, options, counter, results); !s) return s.error();
   if (frames) {
     Scene real;
+    real.array_stride = options.array_stride;
     real.simulation.images_dir = options.images_dir;
     real.simulation.tags = options.tags;
     auto odometry = montecarlo::odometry_of(real.simulation);
