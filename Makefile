@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files test test-asan test-clang test-arm64 bench format format-check tidy packages clean
+.PHONY: build demo demo-files reproduce test test-asan test-clang test-arm64 bench format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -48,6 +48,10 @@ demo/evaluation.txt: demo/result.lcmlog
 demo/report.html: demo/evaluation.txt
 	$(rfmvo) report demo/result.lcmlog --truth demo/truth --out demo/report.html
 
+# The paper's evaluation as a page; IMAGES=DIR: on real frames, too.
+reproduce: build
+	$(rfmvo) reproduce --out reproduction $(if $(IMAGES),--images '$(IMAGES)')
+
 test: build
 	@ctest --test-dir build/release --output-on-failure -j 2
 
@@ -86,4 +90,4 @@ tidy: build
 
 # The Python environment and downloaded packages stay.
 clean:
-	rm -rf build/release build/asan build/clang build/arm64 demo
+	rm -rf build/release build/asan build/clang build/arm64 demo reproduction

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   rfmvo::add_report_command(app, exit_code);
   rfmvo::add_montecarlo_command(app, exit_code);
   rfmvo::add_bound_command(app, exit_code);
+  rfmvo::add_reproduce_command(app, exit_code);
   rfmvo::add_vo_command(app, exit_code);
   try {
     app.parse(argc, argv);

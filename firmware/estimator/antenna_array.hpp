@@ -35,6 +35,8 @@ struct AntennaArray {
   [[nodiscard]] double camera_step(Eigen::Index i) const { return (camera_V.col(i + 1) - camera_V.col(i)).norm(); }
 };
 
+inline constexpr double kMinTagDistance_m = 1e-3;  // keeps the bearing of a tag on an antenna defined
+
 struct ArrayOptions {
   // Lever arms turn with the camera. Differs from Eq. (11), (12): the paper's constant offset assumes that
   // the cart never turns; 10 deg of yaw on 0.4 m is 2.7 rad of phase.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/units.hpp"
-#include "estimator/line_intersection.hpp"
+#include "estimator/distance_steps.hpp"
 #include "estimator/spatial_power_spectrum.hpp"
 
 namespace rfmvo {
@@ -16,9 +16,7 @@ constexpr double kConverged_m = 1e-4;     // move of X_T between two outer itera
 constexpr double kConvergedScale = 1e-4;  // relative move of gamma
 constexpr int kMaxSteps = 50;             // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
-constexpr double kMaxRange_m = 20.0;      // no passive UHF tag answers from farther
 constexpr double kRunaway_m = 1e4;        // X_T goes to infinity where the data say "plane wave"
-constexpr double kMinDistance_m = 1e-3;   // keeps the bearing of a tag on an antenna defined
 constexpr double kUnknownSigma_m = 10.0;  // 1 sigma of a direction the data say nothing about
 constexpr double kUnknownLogScale = 1.0;  // same for the scale, relative
 
@@ -40,7 +38,7 @@ struct Distance {
 };
 Distance distance(const AntennaArray& array, Eigen::Index i, const State& state) {
   const Eigen::Vector3d d = state.p_X_m - array.position_m(i, state.gamma);
-  const double value = std::max(d.norm(), kMinDistance_m);
+  const double value = std::max(d.norm(), kMinTagDistance_m);
   Distance result{value, {}};
   result.derivative.head<3>() = d.transpose() / value;
   result.derivative(3) = -d.dot(array.camera_V.col(i)) / value;
@@ -80,44 +78,27 @@ bool sane(const State& state) {
 // Eq. (18) by Levenberg-Marquardt with Marquardt's scaling. The norm of a scalar in Eq. (18) is read
 // as its square: the method minimises squares.
 State minimise(std::span<const AntennaTerm> antennas, const Eigen::VectorXd& measured, State state) {
-  DistanceResiduals now = distance_residuals(antennas, measured, state.p_X_m, state.gamma);
-  double cost = now.r_m.squaredNorm();
+  std::vector<const AntennaArray*> arrays;
+  for (const AntennaTerm& term : antennas) arrays.push_back(&term.array);
+  DistanceSteps steps(arrays, measured);
+  NormalEquations now = steps.at(state.p_X_m, state.gamma);
   double damping = 1e-3;
   for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
-    Eigen::Matrix4d normal = now.jacobian.transpose() * now.jacobian;
-    const Eigen::Vector4d gradient = now.jacobian.transpose() * now.r_m;
+    Eigen::Matrix4d normal = now.matrix;
     normal.diagonal() += damping * normal.diagonal().cwiseMax(1e-12);
-    const Eigen::Vector4d move = -normal.ldlt().solve(gradient);
+    const Eigen::Vector4d move = -normal.ldlt().solve(now.gradient);
     const State trial{state.p_X_m + move.head<3>(), state.gamma + move(3)};
     damping *= 10.0;
     if (!sane(trial)) continue;
-    DistanceResiduals next = distance_residuals(antennas, measured, trial.p_X_m, trial.gamma);
-    const double next_cost = next.r_m.squaredNorm();
-    if (!(next_cost < cost)) continue;
-    const bool done = cost - next_cost < 1e-10 * cost;
+    const NormalEquations next = steps.at(trial.p_X_m, trial.gamma);
+    if (!(next.cost < now.cost)) continue;
+    const bool done = now.cost - next.cost < 1e-10 * now.cost;
     state = trial;
-    now = std::move(next);
-    cost = next_cost;
+    now = next;
     damping = std::max(damping * 1e-2, 1e-9);
     if (done) break;
   }
   return state;
-}
-
-// Eq. (17): the nearest point to the M x L lines along the averaged directions.
-LineIntersection intersect(std::span<const AntennaTerm> antennas, std::span<const IncidentAngles> angles, double gamma,
-                           bool sphere) {
-  std::vector<Line> lines;
-  for (std::size_t j = 0; j < antennas.size(); ++j) {
-    const AntennaArray& array = antennas[j].array;
-    for (Eigen::Index i = 0; i < array.elements(); ++i) {
-      AngleSums sums = antennas[j].others[static_cast<std::size_t>(i)];
-      sums.add(angles[j], array.R_V_D);
-      const Eigen::Vector3d u = sphere ? sums.mean_direction_V() : array.R_V_D * direction_of(sums.mean_angles());
-      lines.push_back({array.position_m(i, gamma), u});
-    }
-  }
-  return nearest_point(lines);
 }
 
 // sigma^2 (J'J)^-1 of (X_T, gamma). Directions without information get the stated ignorance instead of
@@ -161,6 +142,22 @@ DistanceResiduals distance_residuals(std::span<const AntennaTerm> antennas, cons
   return out;
 }
 
+LineIntersection intersect_lines(std::span<const AntennaTerm> antennas, std::span<const IncidentAngles> angles,
+                                 double gamma, bool fix_sphere_average) {
+  std::vector<Line> lines;
+  for (std::size_t j = 0; j < antennas.size(); ++j) {
+    const AntennaArray& array = antennas[j].array;
+    for (Eigen::Index i = 0; i < array.elements(); ++i) {
+      AngleSums sums = antennas[j].others[static_cast<std::size_t>(i)];
+      sums.add(angles[j], array.R_V_D);
+      const Eigen::Vector3d u =
+          fix_sphere_average ? sums.mean_direction_V() : array.R_V_D * direction_of(sums.mean_angles());
+      lines.push_back({array.position_m(i, gamma), u});
+    }
+  }
+  return nearest_point(lines);
+}
+
 ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double gamma, const JointOptions& options) {
   ArraySolution solution;
   State state{Eigen::Vector3d::Zero(), gamma};
@@ -170,7 +167,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
     for (std::size_t j = 0; j < antennas.size(); ++j)  // Eq. (16)
       solution.angles[j] = refine_angles(antennas[j].array, solution.angles[j], state.gamma, options.refine_step_rad,
                                          options.refine_range_rad);
-    const LineIntersection start = intersect(antennas, solution.angles, state.gamma, options.fix_sphere_average);
+    const LineIntersection start = intersect_lines(antennas, solution.angles, state.gamma, options.fix_sphere_average);
     state.p_X_m = start.point;
     if (!start.determined || !sane(state)) return solution;
     state = minimise(antennas, measured_steps(antennas, state, options.fix_cycles), state);  // Eq. (18)
@@ -186,7 +183,7 @@ ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double g
   solution.covariance = covariance_of(residuals, solution.sigma_m, state.gamma);
   solution.p_X_m = state.p_X_m;
   solution.gamma = state.gamma;
-  solution.found = sane(state) && solution.converged && state.p_X_m.norm() < kMaxRange_m;
+  solution.found = sane(state) && solution.converged && state.p_X_m.norm() < kMaxTagRange_m;
   return solution;
 }
 

@@ -9,8 +9,11 @@
 
 #include "estimator/antenna_array.hpp"
 #include "estimator/incident_angles.hpp"
+#include "estimator/line_intersection.hpp"
 
 namespace rfmvo {
+
+inline constexpr double kMaxTagRange_m = 20.0;  // no passive UHF tag answers from farther
 
 struct JointOptions {
   double refine_step_rad = 0.0;   // delta alpha_opt = delta beta_opt of Eq. (16)
@@ -38,6 +41,12 @@ struct ArraySolution {
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // of (X_T, gamma): sigma^2 (J'J)^-1, bounded
   std::vector<IncidentAngles> angles;                    // refined, one per antenna
 };
+
+// Section III.B, Eq. (17): the point nearest to the M x L lines along the averaged directions. angles: one per
+// antenna, of this array; the others' are in the terms.
+[[nodiscard]] LineIntersection intersect_lines(std::span<const AntennaTerm> antennas,
+                                               std::span<const IncidentAngles> angles, double gamma,
+                                               bool fix_sphere_average);
 
 [[nodiscard]] ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double gamma,
                                                const JointOptions& options);

@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 
-#include "estimator/tag_track.hpp"
 #include "estimator/trajectory_recovery.hpp"
 
 namespace rfmvo {
@@ -66,7 +65,8 @@ TagEstimate estimate_of(const SolvedArray& array, const std::vector<MetricPose>&
 }  // namespace
 
 struct PaperEstimator::Impl {
-  Impl(const Config& c, const Calibration& k) : config(c.paper), antennas(k.antennas), recovery(k.T_B_C) {}
+  Impl(const Config& c, const Calibration& k, ArrayObserver o)
+      : config(c.paper), antennas(k.antennas), observer(std::move(o)), recovery(k.T_B_C) {}
 
   [[nodiscard]] std::optional<std::size_t> antenna_of(std::uint8_t port) const {
     for (std::size_t a = 0; a < antennas.size(); ++a)
@@ -75,8 +75,9 @@ struct PaperEstimator::Impl {
   }
 
   // Solves the tag's complete arrays (`all`: all there are); Section V keeps the one of least HDOP.
-  void solve(Tag& tag, bool all) {
+  void solve(const Epc& epc, Tag& tag, bool all) {
     while (auto array = tag.track.solve_next(all, phases, recovery.R_W_V())) {
+      if (observer) observer(epc, *array);
       if (!array->solution.found || !array->hdop.defined) continue;
       recovery.on(ScaleCandidate{array->first, array->last, array->solution.gamma, log_sigma_of(array->solution),
                                  array->hdop.value});
@@ -85,7 +86,7 @@ struct PaperEstimator::Impl {
   }
 
   void end_segment() {
-    for (auto& [epc, tag] : tags) solve(tag, true);
+    for (auto& [epc, tag] : tags) solve(epc, tag, true);
     const std::vector<MetricPose> path = recovery.path();
     for (auto& [epc, tag] : tags) {
       if (tag.best && (!tag.earlier || tag.best->hdop.value < tag.earlier->hdop))
@@ -114,14 +115,15 @@ struct PaperEstimator::Impl {
 
   PaperConfig config;
   std::vector<AntennaCalibration> antennas;
+  ArrayObserver observer;
   PhaseCalibration phases;
   TrajectoryRecovery recovery;
   std::map<Epc, Tag> tags;
   bool started = false;
 };
 
-PaperEstimator::PaperEstimator(const Config& config, const Calibration& calibration)
-    : impl_(std::make_unique<Impl>(config, calibration)) {}
+PaperEstimator::PaperEstimator(const Config& config, const Calibration& calibration, ArrayObserver observer)
+    : impl_(std::make_unique<Impl>(config, calibration, std::move(observer))) {}
 PaperEstimator::~PaperEstimator() = default;
 
 void PaperEstimator::on(const CameraPose& pose) {
@@ -139,12 +141,12 @@ void PaperEstimator::on(const SampledRead& read) {
   Tag& tag = found->second;
   if (const SampledRead* before = tag.track.newest(*antenna)) impl_->phases.on_pair(before->read, read.read);
   tag.track.on(*antenna, read, impl_->phases);
-  impl_->solve(tag, false);
+  impl_->solve(read.read.epc, tag, false);
 }
 
 void PaperEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& out) {
   for (auto& [epc, tag] : impl_->tags)
-    if (final || !tag.best || (now - tag.track.last_read()).seconds() > kPassOver_s) impl_->solve(tag, true);
+    if (final || !tag.best || (now - tag.track.last_read()).seconds() > kPassOver_s) impl_->solve(epc, tag, true);
 
   const std::vector<MetricPose> path = impl_->recovery.path();
   for (const auto& [epc, tag] : impl_->tags) out.emplace_back(impl_->tag_estimate(epc, tag, now, path));
@@ -163,6 +165,17 @@ void PaperEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& 
   trajectory.segment = impl_->recovery.segment();
   trajectory.poses = path;
   out.emplace_back(std::move(trajectory));
+}
+
+PaperEstimator::Counts PaperEstimator::counts() const {
+  Counts counts;
+  for (const auto& [epc, tag] : impl_->tags) {
+    ++counts.tags;
+    if (tag.track.enough_reads()) ++counts.tags_with_enough_reads;
+    counts.arrays_due += tag.track.arrays_due();
+    counts.arrays_without_range += tag.track.arrays_without_range();
+  }
+  return counts;
 }
 
 }  // namespace rfmvo

@@ -18,6 +18,27 @@ double sweep_rad(const std::vector<Eigen::Vector3d>& positions, const Eigen::Vec
   return std::acos(std::clamp(smallest_cos, -1.0, 1.0));
 }
 
+// All elements, axes of W, origin the camera at the first read.
+std::vector<Eigen::Vector3d> positions_of(const std::vector<AntennaTerm>& terms, double gamma,
+                                          const Eigen::Quaterniond& R_W_V) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const AntennaTerm& term : terms)
+    for (Eigen::Index i = 0; i < term.array.elements(); ++i)
+      positions.push_back(R_W_V * term.array.position_m(i, gamma));
+  return positions;
+}
+
+// Section III.B.
+SearchedPosition locate(const std::vector<AntennaTerm>& terms, double gamma, bool fix_sphere_average,
+                        const Eigen::Quaterniond& R_W_V) {
+  std::vector<IncidentAngles> angles;
+  for (const AntennaTerm& term : terms) angles.push_back(term.angles);
+  const LineIntersection point = intersect_lines(terms, angles, gamma, fix_sphere_average);
+  SearchedPosition searched{point.determined && point.point.norm() < kMaxTagRange_m, point.point, gamma, {}};
+  if (searched.found) searched.hdop = horizontal_dilution(positions_of(terms, gamma, R_W_V), R_W_V * point.point);
+  return searched;
+}
+
 }  // namespace
 
 TagTrack::TagTrack(const PaperConfig& config, const std::vector<AntennaCalibration>& antennas)
@@ -77,8 +98,13 @@ void TagTrack::search(const PhaseCalibration& phases) {
   const ScaleRange range =
       scale_range(arrays, {config_.max_speed_m_s, config_.min_read_rate_hz, config_.fix_scale_range});
   const SpectrumPeak peak = search_spectrum(arrays, range, rad_from_deg(config_.angle_step_deg), config_.scale_step);
-  if (!peak.found) return;
-  for (std::size_t j = 0; j < record.members.size(); ++j) record.members[j].angles = peak.angles[j];
+  ++arrays_due_;
+  if (!peak.found) {
+    ++arrays_without_range_;
+    return;
+  }
+  for (std::size_t j = 0; j < record.members.size(); ++j)
+    record.members[j].angles = record.members[j].searched = peak.angles[j];
   record.range = range;
   record.gamma = peak.gamma;
   records_.push_back(std::move(record));
@@ -104,7 +130,8 @@ bool TagTrack::complete(const Record& record) const {
 }
 
 // Eq. (9), (10): element n of an antenna belongs to the arrays with first <= n < first + L.
-std::vector<AngleSums> TagTrack::others(const Record& record, const Member& member) const {
+std::vector<AngleSums> TagTrack::others(const Record& record, const Member& member,
+                                        IncidentAngles Member::*angles) const {
   std::vector<AngleSums> sums(elements_);
   for (const Record& other : records_) {
     if (&other == &record) continue;
@@ -112,7 +139,7 @@ std::vector<AngleSums> TagTrack::others(const Record& record, const Member& memb
       if (m.antenna != member.antenna) continue;
       const std::uint64_t begin = std::max(m.first, member.first);
       const std::uint64_t end = std::min(m.first, member.first) + elements_;
-      for (std::uint64_t n = begin; n < end; ++n) sums[n - member.first].add(m.angles, m.R_V_D);
+      for (std::uint64_t n = begin; n < end; ++n) sums[n - member.first].add(m.*angles, m.R_V_D);
     }
   }
   return sums;
@@ -138,15 +165,27 @@ std::optional<SolvedArray> TagTrack::solve_next(bool all, const PhaseCalibration
   return solved;
 }
 
+std::vector<AntennaTerm> TagTrack::terms_of(const Record& record, IncidentAngles Member::*angles,
+                                            const PhaseCalibration& phases) const {
+  const Eigen::Vector3d p_V_origin = first_read(record).T_V_C.p_V_C;
+  std::vector<AntennaTerm> terms;
+  for (const Member& m : record.members)
+    terms.push_back({array_of(m, p_V_origin, phases), m.*angles, others(record, m, angles)});
+  return terms;
+}
+
 SolvedArray TagTrack::solve(Record& record, const PhaseCalibration& phases, const Eigen::Quaterniond& R_W_V) {
   const SampledRead& first = first_read(record);
-  SolvedArray out{first.read.time, first.read.time, {}, {}, 0.0, 0};
-  std::vector<AntennaTerm> terms;
+  SolvedArray out;
+  out.first = out.last = first.read.time;
+  out.R_V_C = first.T_V_C.R_V_C;
+  out.range = record.range;
   for (const Member& m : record.members) {
-    terms.push_back({array_of(m, first.T_V_C.p_V_C, phases), m.angles, others(record, m)});
     const AntennaReads& port = by_antenna_[m.antenna];
     out.last = std::max(out.last, port.reads[m.first - port.first + elements_ - 1].read.time);
   }
+  out.searched = locate(terms_of(record, &Member::searched, phases), record.gamma, config_.fix_sphere_average, R_W_V);
+  const std::vector<AntennaTerm> terms = terms_of(record, &Member::angles, phases);
   JointOptions options;
   options.refine_step_rad = rad_from_deg(config_.refine_step_deg);
   options.refine_range_rad = rad_from_deg(config_.refine_range_deg);
@@ -162,10 +201,7 @@ SolvedArray TagTrack::solve(Record& record, const PhaseCalibration& phases, cons
   if (!out.solution.found) return out;
 
   for (std::size_t j = 0; j < terms.size(); ++j) record.members[j].angles = out.solution.angles[j];
-  std::vector<Eigen::Vector3d> positions;  // axes of W, origin the camera at the first read
-  for (const AntennaTerm& term : terms)
-    for (Eigen::Index i = 0; i < term.array.elements(); ++i)
-      positions.push_back(R_W_V * term.array.position_m(i, out.solution.gamma));
+  const std::vector<Eigen::Vector3d> positions = positions_of(terms, out.solution.gamma, R_W_V);
   const Eigen::Vector3d p_X = R_W_V * out.solution.p_X_m;
   out.hdop = horizontal_dilution(positions, p_X);
   out.bearing_sweep_rad = sweep_rad(positions, p_X);

@@ -18,9 +18,20 @@
 
 namespace rfmvo {
 
+// What section III alone says, before the joint optimization of section IV.
+struct SearchedPosition {
+  bool found = false;                               // false: all lines are parallel, or out of any reader's range
+  Eigen::Vector3d p_X_m = Eigen::Vector3d::Zero();  // X_T of Eq. (17): as ArraySolution
+  double gamma = 0.0;                               // gamma* of Eq. (8)
+  Hdop hdop;                                        // x-y of W
+};
+
 // The paper's whole answer for one tag in one antenna array.
 struct SolvedArray {
-  DeviceTime first, last;  // of its reads
+  DeviceTime first, last;                                     // of its reads
+  Eigen::Quaterniond R_V_C = Eigen::Quaterniond::Identity();  // camera at `first`
+  ScaleRange range;                                           // Eq. (4), (5)
+  SearchedPosition searched;
   ArraySolution solution;  // p_X_m: axes of V, origin the camera at `first`
   Hdop hdop;               // x-y of W
   double bearing_sweep_rad = 0.0;
@@ -47,13 +58,17 @@ class TagTrack {
   [[nodiscard]] DeviceTime last_read() const { return last_read_; }
   [[nodiscard]] std::uint32_t reads() const { return reads_; }
   [[nodiscard]] bool enough_reads() const { return enough_reads_; }  // L on one antenna, at any time
+  // Arrays that were due, and those of them without a peak: empty range of scales, or no usable step.
+  [[nodiscard]] std::uint32_t arrays_due() const { return arrays_due_; }
+  [[nodiscard]] std::uint32_t arrays_without_range() const { return arrays_without_range_; }
 
  private:
   struct Member {  // one antenna of an array
     std::size_t antenna = 0;
     std::uint64_t first = 0;  // number of its first read on that antenna
     Eigen::Quaterniond R_V_D = Eigen::Quaterniond::Identity();
-    IncidentAngles angles;  // of the spectrum; refined once the array is solved
+    IncidentAngles searched;  // of the spectrum
+    IncidentAngles angles;    // the same; refined once the array is solved
   };
   struct Record {
     std::vector<Member> members;
@@ -71,7 +86,10 @@ class TagTrack {
   [[nodiscard]] bool complete(const Record& record) const;
   [[nodiscard]] AntennaArray array_of(const Member& member, const Eigen::Vector3d& p_V_origin,
                                       const PhaseCalibration& phases) const;
-  [[nodiscard]] std::vector<AngleSums> others(const Record& record, const Member& member) const;
+  [[nodiscard]] std::vector<AngleSums> others(const Record& record, const Member& member,
+                                              IncidentAngles Member::*angles) const;
+  [[nodiscard]] std::vector<AntennaTerm> terms_of(const Record& record, IncidentAngles Member::*angles,
+                                                  const PhaseCalibration& phases) const;
   [[nodiscard]] const SampledRead& first_read(const Record& record) const;
   [[nodiscard]] SolvedArray solve(Record& record, const PhaseCalibration& phases, const Eigen::Quaterniond& R_W_V);
   [[nodiscard]] bool shared(const Record& record) const;
@@ -87,6 +105,7 @@ class TagTrack {
   DeviceTime last_read_;
   std::uint32_t reads_ = 0;
   bool enough_reads_ = false;
+  std::uint32_t arrays_due_ = 0, arrays_without_range_ = 0;
 };
 
 }  // namespace rfmvo

@@ -13,6 +13,7 @@ void add_export_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
 void add_montecarlo_command(CLI::App& app, int& exit_code);
 void add_bound_command(CLI::App& app, int& exit_code);
+void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 
 }  // namespace rfmvo

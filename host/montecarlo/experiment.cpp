@@ -1,51 +1,9 @@
 #include "montecarlo/experiment.hpp"
 
-#include <time.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <mutex>
-#include <thread>
-
-#include "estimator/pipeline.hpp"
 #include "montecarlo/recording.hpp"
 
 namespace rfmvo::montecarlo {
 namespace {
-
-double thread_cpu_s() {
-  timespec t{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::vector<Estimate> estimate(const Recording& recording, const Config& config, Timing& timing) {
-  Pipeline pipeline;
-  std::vector<Estimate> estimates;
-  const auto keep = [&](std::span<const Estimate> some) {
-    estimates.insert(estimates.end(), some.begin(), some.end());
-  };
-  const double cpu_before_s = thread_cpu_s();
-  for (const Event& event : recording.events) {
-    const double before_s = wall_s();
-    if (const auto* start = std::get_if<Start>(&event))
-      keep(pipeline.on(Start{start->time, config, start->calibration}));
-    else
-      keep(pipeline.on(event));
-    const double took_s = wall_s() - before_s;
-    timing.wall_s += took_s;
-    if (std::holds_alternative<TagRead>(event)) timing.read_s.push_back(took_s);
-  }
-  const double before_s = wall_s();
-  keep(pipeline.finish());
-  timing.wall_s += wall_s() - before_s;
-  timing.cpu_s = thread_cpu_s() - cpu_before_s;
-  timing.span_s = (time_of(recording.events.back()) - time_of(recording.events.front())).seconds();
-  return estimates;
-}
 
 Result<evaluate::Evaluation> judge(const Recording& recording, const Options& options, Timing& timing) {
   const auto config = config_for(std::get<Start>(recording.events.front()).config, options);
@@ -120,32 +78,19 @@ Result<std::vector<CameraPose>> odometry_of_all(const Options& options) {
 Result<std::vector<SeedRun>> run(const Options& options, const Progress& progress) {
   const auto odometry = odometry_of_all(options);
   if (!odometry) return odometry.error();
-  std::vector<std::optional<Result<SeedRun>>> results(options.seeds);
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};
-  std::mutex telling;
-  std::size_t done = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < options.seeds && !failed; i = next++) {
-      results[i].emplace(run_seed(options, options.first_seed + i, odometry.value()));
-      if (!results[i]->ok()) failed = true;
-      const std::lock_guard lock(telling);
-      progress(++done, options.seeds);
-    }
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (std::size_t j = 0; j < std::min(options.jobs, options.seeds); ++j) workers.emplace_back(work);
-  }  // joins
-  std::vector<SeedRun> runs;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!results[i]) continue;  // not begun when another failed
-    if (!results[i]->ok()) {
-      const Error& error = results[i]->error();
+  std::vector<std::optional<SeedRun>> results(options.seeds);
+  const auto work = [&](std::size_t i) -> Status {
+    auto result = run_seed(options, options.first_seed + i, odometry.value());
+    if (!result) {
+      const Error& error = result.error();
       return Error{error.code, "seed " + std::to_string(options.first_seed + i) + ": " + error.what, error.where};
     }
-    runs.push_back(std::move(*results[i]).value());
-  }
+    results[i] = std::move(result).value();
+    return Done{};
+  };
+  if (const Status status = in_parallel(options.seeds, options.jobs, work, progress); !status) return status.error();
+  std::vector<SeedRun> runs;
+  for (auto& result : results) runs.push_back(std::move(*result));
   return runs;
 }
 

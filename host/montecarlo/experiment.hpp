@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "base/result.hpp"
 #include "bound/bound.hpp"
 #include "evaluate/evaluation.hpp"
+#include "montecarlo/workers.hpp"
 #include "simulate/simulation.hpp"
 
 namespace rfmvo::montecarlo {
@@ -43,9 +43,6 @@ struct SeedRun {
   std::optional<bound::Bound> bound, known_path_bound;
   Timing timing;
 };
-
-// After each finished seed, from one thread at a time.
-using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
 // In order of the seeds. The first error by seed ends the experiment.
 [[nodiscard]] Result<std::vector<SeedRun>> run(const Options& options, const Progress& progress);

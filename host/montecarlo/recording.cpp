@@ -1,11 +1,20 @@
 #include "montecarlo/recording.hpp"
 
+#include <chrono>
+
 #include "config/config_table.hpp"
 #include "edges/lcm_codec.hpp"
 #include "edges/toml_files.hpp"
+#include "estimator/pipeline.hpp"
+#include "montecarlo/cpu_time.hpp"
 #include "vision/visual_odometry.hpp"
 
 namespace rfmvo::montecarlo {
+namespace {
+
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
 
 Result<std::vector<CameraPose>> odometry_of(const simulate::Options& options) {
   simulate::Options with_frames = options;
@@ -55,6 +64,31 @@ Result<Config> config_for(const Config& recorded, const Options& options) {
   config.estimator.pose_source = "poses";
   if (const Status s = check_consistency(config); !s) return s.error();
   return config;
+}
+
+std::vector<Estimate> estimate(const Recording& recording, const Config& config, Timing& timing) {
+  Pipeline pipeline;
+  std::vector<Estimate> estimates;
+  const auto keep = [&](std::span<const Estimate> some) {
+    estimates.insert(estimates.end(), some.begin(), some.end());
+  };
+  const double cpu_before_s = thread_cpu_s();
+  for (const Event& event : recording.events) {
+    const double before_s = wall_s();
+    if (const auto* start = std::get_if<Start>(&event))
+      keep(pipeline.on(Start{start->time, config, start->calibration}));
+    else
+      keep(pipeline.on(event));
+    const double took_s = wall_s() - before_s;
+    timing.wall_s += took_s;
+    if (std::holds_alternative<TagRead>(event)) timing.read_s.push_back(took_s);
+  }
+  const double before_s = wall_s();
+  keep(pipeline.finish());
+  timing.wall_s += wall_s() - before_s;
+  timing.cpu_s = thread_cpu_s() - cpu_before_s;
+  timing.span_s = (time_of(recording.events.back()) - time_of(recording.events.front())).seconds();
+  return estimates;
 }
 
 }  // namespace rfmvo::montecarlo

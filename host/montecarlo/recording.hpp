@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "estimator/estimate.hpp"
 #include "montecarlo/experiment.hpp"
 
 namespace rfmvo::montecarlo {
@@ -21,5 +22,8 @@ struct Recording {
 
 // Config of a run: its own, with the options' over it.
 [[nodiscard]] Result<Config> config_for(const Config& recorded, const Options& options);
+
+// Everything the estimator says about the recording, to the end; adds to `timing`.
+[[nodiscard]] std::vector<Estimate> estimate(const Recording& recording, const Config& config, Timing& timing);
 
 }  // namespace rfmvo::montecarlo

@@ -27,7 +27,7 @@ inline constexpr PlotColour kTruth{"#070707", "rgb(  7,   7,   7)", "rgb(7,7,7)"
 struct LegendEntry {
   const char* css;     // colour
   const char* symbol;  // one character that looks like the marks in the plot
-  const char* text;
+  std::string text;
 };
 
 struct Plot {

@@ -50,11 +50,12 @@ struct Board {
 };
 constexpr Board kBoards[] = {{0.3, 1.55}, {1.35, 1.40}, {2.5, 1.50}, {3.6, 1.35}};
 
-// Four corners of the second and the third board.
-void add_tags(Scene& scene, Environment& room, Random& random) {
+// Four corners of the second and the third board; the first `count` of them (0: all).
+void add_tags(Scene& scene, Environment& room, Random& random, std::size_t count) {
   for (const Board& board : {kBoards[1], kBoards[2]}) {
     for (const double dx_m : {0.05, kBoard_m - 0.05}) {
       for (const double dz_m : {0.05, kBoard_m - 0.05}) {
+        if (count != 0 && scene.tags.size() == count) return;
         const double jitter_m = random.uniform(-0.02, 0.02);
         const Eigen::Vector3d p(board.x_m + dx_m + jitter_m, kWallY_m, board.z_m - dz_m);
         scene.tags.push_back({epc_of(scene.tags.size() + 1), p});
@@ -104,7 +105,7 @@ Scene make_wall_scene(const Options& options) {
   Random look(options.seed, "textures");
   furnish(*room, look);
   Random random(options.seed, "tag positions");
-  add_tags(scene, *room, random);
+  add_tags(scene, *room, random, options.tags);
   scene.environment = room;
   attach_rendered_frames(scene, options.seed);
   return scene;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "estimator/distance_steps.hpp"
 #include "estimator/joint_optimization.hpp"
 #include "unit/estimator_paper_scene.hpp"
 
@@ -70,6 +71,21 @@ TEST(JointOptimization, SaysNotFoundForParallelLines) {
   AntennaTerm term = term_at({0, 0, 0}, 0.4);
   for (AngleSums& sums : term.others) sums = AngleSums();
   EXPECT_FALSE(joint_optimization({&term, 1}, kGamma, options()).found);
+}
+
+TEST(DistanceSteps, SumsAreThoseOfTheResidualsOneByOne) {
+  std::vector<AntennaTerm> terms{term_at({0, 0, 0}, 0.4), term_at({0.1, 0.5, -0.2}, 2.2)};
+  terms[0].array.usable(58) = terms[1].array.usable(0) = terms[1].array.usable(20) = false;
+  Eigen::VectorXd measured(2 * 59 - 3);
+  for (Eigen::Index i = 0; i < measured.size(); ++i) measured(i) = 0.05 * paper_scene::wobble(static_cast<int>(i));
+  const Eigen::Vector3d p(0.7, 0.2, 1.5);
+  const DistanceResiduals single = distance_residuals(terms, measured, p, 1.4);
+  const AntennaArray* arrays[] = {&terms[0].array, &terms[1].array};
+  const NormalEquations sums = DistanceSteps(arrays, measured).at(p, 1.4);
+  // Rounding of sums of 115 numbers below 1.
+  EXPECT_LT((sums.matrix - single.jacobian.transpose() * single.jacobian).norm(), 1e-13);
+  EXPECT_LT((sums.gradient - single.jacobian.transpose() * single.r_m).norm(), 1e-13);
+  EXPECT_NEAR(sums.cost, single.r_m.squaredNorm(), 1e-13);
 }
 
 TEST(DistanceResiduals, JacobianAgreesWithNumericDifferences) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "estimator/array_spectrum.hpp"
 #include "estimator/spatial_power_spectrum.hpp"
 #include "unit/estimator_paper_scene.hpp"
 
@@ -89,6 +90,59 @@ TEST(SpatialPowerSpectrum, IgnoresStepsThatAreNotComparable) {
   EXPECT_LT(spatial_power(array, kAngles, 1.7), 0.99);
   array.usable(20) = false;
   EXPECT_NEAR(spatial_power(array, kAngles, 1.7), 1.0, 1e-10);
+}
+
+DirectionGrid grid_of(int count) {
+  std::vector<double> angles;
+  for (int n = 0; n < count; ++n) angles.push_back(kPi * n / (count - 1));
+  return {angles, angles};
+}
+
+// Noise, curvature, levers that turn, a step that cannot be compared; flat paths have directions that tie.
+AntennaArray disturbed_array(int seed) {
+  const auto path = paper_scene::weave(20 + seed % 41, seed % 3 == 0 ? 0.0 : 1.0);
+  auto phases = paper_scene::tag_phases(path, {0.5, 1.2, 0.6}, 0.1 * seed);
+  for (std::size_t i = 0; i < phases.size(); ++i)
+    phases[i] += 0.2 * (seed % 7) * paper_scene::wobble(static_cast<int>(i) + 100 * seed);
+  AntennaArray array = paper_scene::array_of(path, phases, 0.7 + 0.1 * (seed % 10));
+  for (Eigen::Index i = 0; i < array.elements(); ++i)
+    array.lever_V_m.col(i) = 0.02 * seed * Eigen::Vector3d(std::cos(0.03 * i), std::sin(0.03 * i), 0.1);
+  array.usable(seed % array.steps()) = false;
+  return array;
+}
+
+TEST(ArraySpectrum, SiftingByTheKernelKeepsThePeakToTheLastBit) {
+  const DirectionGrid grid = grid_of(37);
+  for (int seed = 0; seed < 24; ++seed) {
+    ArraySpectrum spectrum(disturbed_array(seed));
+    const GammaSteps scales{0.5, 0.1, 5 + seed % 12};
+    const auto sifted = spectrum.peaks(grid, scales), all = spectrum.peaks_in_double(grid, scales);
+    ASSERT_EQ(sifted.size(), all.size());
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      EXPECT_EQ(sifted[n].direction, all[n].direction) << seed << ' ' << n;
+      EXPECT_EQ(sifted[n].power, all[n].power) << seed << ' ' << n;
+    }
+  }
+}
+
+TEST(ArraySpectrum, PeakIsTheHighestPowerOfTheGrid) {
+  ArraySpectrum spectrum(disturbed_array(5));
+  const DirectionGrid grid = grid_of(13);
+  const GammaSteps scales{0.6, 0.2, 4};
+  const auto peaks = spectrum.peaks(grid, scales);
+  for (int n = 0; n < scales.count; ++n)
+    for (std::size_t d = 0; d < grid.size(); ++d)
+      EXPECT_LE(spectrum.power(grid.angles(d), scales.at(n)), peaks[static_cast<std::size_t>(n)].power);
+}
+
+TEST(ArraySpectrum, StepsBeyondTheKernelsRangeAreSearchedAllTheSame) {
+  AntennaArray array = disturbed_array(4);
+  array.camera_V.rightCols(10).colwise() += Eigen::Vector3d(0.0, 40.0, 0.0);  // a gap of 40 units: 250 turns
+  ArraySpectrum spectrum(array);
+  const DirectionGrid grid = grid_of(10);
+  const auto peak = spectrum.peaks(grid, {1.0, 0.1, 1}).front();
+  EXPECT_EQ(peak.direction, spectrum.peaks_in_double(grid, {1.0, 0.1, 1}).front().direction);
+  EXPECT_GT(peak.power, 0.0);
 }
 
 TEST(ScaleRange, HoldsTheTruthAtASlowEvenPace) {
