@@ -15,13 +15,14 @@ namespace {
 constexpr double kMaxViewAngle_rad = 30.0 * kPi / 180.0;     // between the old and the new sight line
 constexpr double kMaxRealignAngle_rad = 10.0 * kPi / 180.0;  // measured: 8..25 degrees are alike
 constexpr double kMaxSlip_px = 1.5;                          // of a track, that realigning mends; more is another thing
+constexpr double kMaxMiss_px = 5.0;                          // farther from where the map has it: something else
 constexpr int kCoarsestLevel = 2;                            // finds what is up to about 15 px away
 constexpr double kMargin_px = 12.0;                          // room for the patch
 
 std::optional<Eigen::Vector2d> visible_at(const CameraModel& camera, const Eigen::Vector3d& p_C) {
   if (p_C.z() <= kMinDepth) return std::nullopt;
   const Eigen::Vector2d n = p_C.hnormalized();
-  constexpr double kWidest = 1.5;  // of the normalised plane: beyond, distortion models fold over
+  const double kWidest = camera.distortion == Distortion::kRadtan ? 1.5 : 2.5;  // radtan folds over beyond
   if (n.norm() > kWidest) return std::nullopt;
   const Eigen::Vector2d px = project(camera, n);
   const bool inside = px.x() > kMargin_px && px.y() > kMargin_px && px.x() < camera.width_px - kMargin_px &&
@@ -88,7 +89,7 @@ std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const 
     const cv::Point2f predicted(static_cast<float>(px->x()), static_cast<float>(px->y()));
     const auto at = align_patch(from.pyramid, pyramid,
                                 {o->px, predicted, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, kCoarsestLevel);
-    if (at) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0});
+    if (at && cv::norm(*at - predicted) <= kMaxMiss_px) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
   }
   return found;
 }
