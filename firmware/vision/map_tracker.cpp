@@ -13,6 +13,7 @@ constexpr double kKeyframeFlow_rad = 20.0 / 520.0;  // VISION design: rotation-c
 constexpr double kRematchFlow = 0.45;   // of that: old landmarks are looked for then, so that not all work comes at once
 constexpr double kKeyframeCommon = 0.7;             // VISION design: of the last key frame's tracks
 constexpr double kMotionHuber_px = 0.6;             // VISION design
+constexpr double kRescueMiss_px = 10.0;             // as far as a patch is looked for
 constexpr int kMinInliers = 12;                     // fewer: no pose
 constexpr double kMinInlierShare = 0.4;             // of the located tracks: below, no pose
 constexpr int kMaxStrikes = 3;                      // frames above the gate before a track is dropped
@@ -106,6 +107,13 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   const ViewPose predicted = predict(time);
   std::vector<Track> followed = advanced(tracks_, previous_, pyramid, predict_tracks(predicted), lens_.camera());
   MotionSolution s = locate_camera(predicted, time, followed);
+  if (s.inliers == 0) {
+    // The light has changed at once, or pictures are missing: the map's patches, gain and offset free, may still be
+    // found about where they should be.
+    followed = rematch(map_, {}, pyramid, predicted, lens_.camera(), {options_.max_tracks, kRescueMiss_px});
+    for (Track& t : followed) t.fresh = false;
+    s = locate_camera(predicted, time, followed);
+  }
   if (s.inliers == 0) return std::nullopt;
   realign(map_, followed, pyramid, s.T_C_V, lens_.camera());
   s = locate_camera(s.T_C_V, time, followed);
@@ -177,7 +185,7 @@ double MapTracker::flow_since_keyframe() const {
 
 void MapTracker::rematch_tracks(const Pyramid& pyramid) {
   // At most half of the tracks: the other half must be new parts of the scene.
-  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), options_.max_tracks / 2);
+  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), {.most = options_.max_tracks / 2});
   tracks_.insert(tracks_.end(), again.begin(), again.end());
   std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
   rematched_ = true;

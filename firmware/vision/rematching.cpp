@@ -15,7 +15,6 @@ namespace {
 constexpr double kMaxViewAngle_rad = 30.0 * kPi / 180.0;     // between the old and the new sight line
 constexpr double kMaxRealignAngle_rad = 10.0 * kPi / 180.0;  // measured: 8..25 degrees are alike
 constexpr double kMaxSlip_px = 1.5;                          // of a track, that realigning mends; more is another thing
-constexpr double kMaxMiss_px = 5.0;                          // farther from where the map has it: something else
 constexpr int kCoarsestLevel = 2;                            // finds what is up to about 15 px away
 constexpr double kMargin_px = 12.0;                          // room for the patch
 
@@ -72,12 +71,12 @@ Eigen::Matrix2d warp(const ViewPose& T_K_V, const KeyframeObservation& o, const 
 }  // namespace
 
 std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const Pyramid& pyramid, const ViewPose& T_C_V,
-                           const CameraModel& camera, int most) {
+                           const CameraModel& camera, const RematchLimits& limits) {
   std::vector<Track> found;
   auto next = tracks.begin();
   const Eigen::Vector3d centre = T_C_V.centre();
   for (const auto& [id, landmark] : map.landmarks) {
-    if (static_cast<int>(found.size()) >= most) break;
+    if (static_cast<int>(found.size()) >= limits.most) break;
     while (next != tracks.end() && next->landmark < id) ++next;
     const bool followed = next != tracks.end() && next->landmark == id;
     if (followed || !landmark.located) continue;
@@ -89,7 +88,7 @@ std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const 
     const cv::Point2f predicted(static_cast<float>(px->x()), static_cast<float>(px->y()));
     const auto at = align_patch(from.pyramid, pyramid,
                                 {o->px, predicted, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, kCoarsestLevel);
-    if (at && cv::norm(*at - predicted) <= kMaxMiss_px) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
+    if (at && cv::norm(*at - predicted) <= limits.max_miss_px) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
   }
   return found;
 }

@@ -75,6 +75,7 @@ struct VisualOdometry::Impl {
   Matrix6d previous_covariance = Matrix6d::Zero();
   std::vector<SettledPose> settled;  // by the last frame
   std::optional<CameraPose> newest;  // with a pose, of this segment
+  bool last_had_pose = false;
   std::shared_ptr<const std::vector<std::uint8_t>> last_image;
 };
 
@@ -89,6 +90,7 @@ void VisualOdometry::Impl::settle(bool segment_ends) {
 void VisualOdometry::Impl::lose() {
   settle(true);
   newest.reset();
+  last_had_pose = false;
   next_landmark = tracker->next_landmark();
   lens = tracker->lens();
   tracker.reset();
@@ -130,13 +132,14 @@ CameraPose VisualOdometry::Impl::start(DeviceTime time, Pyramid pyramid) {
   tracker->begin(std::move(*map), std::move(tracks), std::move(pyramid), next_landmark);
   tracks.clear();
   newest = pose;
+  last_had_pose = true;
   return pose;
 }
 
 // The same bits again: a sensor has noise, so the camera hangs. That is no news about the motion; the pose stays, and
 // is not vouched for.
 CameraPose VisualOdometry::Impl::stay(DeviceTime time) {
-  if (!newest || newest->time < tracker->pose_time()) return without_pose(time);
+  if (!last_had_pose) return without_pose(time);  // black, for example
   CameraPose pose = *newest;
   pose.time = time;
   pose.status = VoStatus::kDegraded;
@@ -145,6 +148,7 @@ CameraPose VisualOdometry::Impl::stay(DeviceTime time) {
 
 CameraPose VisualOdometry::Impl::track(DeviceTime time, const Pyramid& pyramid) {
   const auto found = tracker->on(time, pyramid);
+  last_had_pose = found.has_value();
   if (!found) return without_pose(time);
   CameraPose pose;
   pose.time = time;
