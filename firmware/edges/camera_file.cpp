@@ -19,9 +19,9 @@ namespace {
 constexpr int kMaxSide_px = 20'000;
 
 struct Raw {
-  std::vector<double> matrix;       // fx, fy, cx, cy
+  std::vector<double> matrix;  // fx, fy, cx, cy
   std::vector<double> distortion;
-  std::string model;                // as written
+  std::string model;  // as written
   int width_px = 0, height_px = 0;
 };
 
@@ -74,9 +74,8 @@ Status set_distortion(const Raw& raw, CameraModel& camera) {
     return std::any_of(names.begin(), names.end(), [&raw](const char* name) { return raw.model == name; });
   };
   const auto unused = [&raw](std::size_t from) {
-    return raw.distortion.size() <= from ||
-           std::all_of(raw.distortion.begin() + static_cast<std::ptrdiff_t>(from), raw.distortion.end(),
-                       [](double k) { return k == 0.0; });
+    return raw.distortion.size() <= from || std::all_of(raw.distortion.begin() + static_cast<std::ptrdiff_t>(from),
+                                                        raw.distortion.end(), [](double k) { return k == 0.0; });
   };
   const std::size_t count = raw.distortion.size();
   if (is({"equidistant", "fisheye", "kannala_brandt"})) {
@@ -91,8 +90,8 @@ Status set_distortion(const Raw& raw, CameraModel& camera) {
     return Done{};
   }
   if (is({"none", ""}) && unused(0)) return Done{};
-  return Error{ErrorCode::kUnsupported, "camera model \"" + raw.model + "\" is not supported; known: radtan, equidistant",
-               ""};
+  return Error{ErrorCode::kUnsupported,
+               "camera model \"" + raw.model + "\" is not supported; known: radtan, equidistant", ""};
 }
 
 Result<CameraModel> checked(const Raw& raw) {

@@ -15,7 +15,7 @@ namespace rfmvo {
 namespace {
 
 constexpr std::uintmax_t kMaxImageFileBytes = std::uintmax_t{1} << 27;  // as in the journal
-constexpr double kMaxTime_s = 9e9;  // year 2255; fits nanoseconds
+constexpr double kMaxTime_s = 9e9;                                      // year 2255; fits nanoseconds
 
 struct Entry {
   DeviceTime time;
@@ -45,7 +45,8 @@ Result<std::vector<std::pair<std::size_t, std::string>>> lines_of(const std::str
 Result<CameraModel> read_camera(const std::string& directory) {
   for (const char* name : {"camchain.yaml", "camera_info.yaml", "calibration.yaml", "camera.yaml", "calib.yaml"}) {
     const std::string path = directory + "/" + name;
-    if (!std::filesystem::exists(directory + "/calib.txt") && std::filesystem::exists(path)) return read_camera_file(path);
+    if (!std::filesystem::exists(directory + "/calib.txt") && std::filesystem::exists(path))
+      return read_camera_file(path);
   }
   return read_camera_line(directory + "/calib.txt");
 }

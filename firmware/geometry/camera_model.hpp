@@ -1,5 +1,5 @@
 // Cameras: a pinhole with radial-tangential distortion (OpenCV's and Kalibr's "radtan"), or a fisheye lens whose image
-// radius follows the angle (Kalibr's "equidistant", OpenCV's fisheye module; J. Kannala and S. Brandt, IEEE PAMI 28(8), 2006).
+// radius follows the angle (Kalibr's "equidistant", OpenCV's fisheye module; Kannala and Brandt, IEEE PAMI 28(8), 2006).
 #pragma once
 
 #include <Eigen/Core>

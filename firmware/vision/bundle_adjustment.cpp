@@ -20,6 +20,9 @@ constexpr double kMaxDamping = 1e4;
 constexpr double kCostDone = 1e-3;       // relative: a further step changes poses by less than their noise
 constexpr double kBehindCost_px2 = 1e4;  // of a point behind a camera: never better than any visible outlier
 
+// Our own Schur complement instead of Ceres: per solve, on the same two cores, it took 2.2..4.4 ms for 10 key frames
+// where Ceres 2.1 (DENSE_SCHUR, same cost at the end) took 6..8, 6.5 against 17 for 20, 25 against 52 for 60 poses and
+// 279 points, 44 against 100 for 60 and 750. It also hands out the reduced system, which says what the lens wants.
 class BundleSolver {
  public:
   BundleSolver(BundleProblem& problem, const BundleOptions& options) : problem_(problem), options_(options) {

@@ -13,7 +13,8 @@ constexpr double kNoise_px = 2.0;
 constexpr double kMemory = 0.98;           // of a window for the next one: a lens changes slowly
 constexpr double kWindowShare = 1.0 / 15;  // of a window's pictures that the next one lacks
 // A window contradicts the calibration of k1 or readout if it sees them this many of its sigmas away, and sees them
-// this much better than the prior. Measured with kNoise_px: up to 1 where the calibration is right, 4 and more where not.
+// this much better than the prior. Measured with kNoise_px: up to 1 where the calibration is right, 4 and more where
+// not.
 constexpr double kContradiction = 3.0;
 constexpr double kClear = 3.0;
 constexpr double kSettled_k1 = 0.001, kSettled_s = 0.001;  // steps that hardly show: 0.2 px in the corner
@@ -84,7 +85,7 @@ bool Lens::contradicted(int i, const LensMatrix& information, const LensVector& 
   if (!(information.determinant() > 0.0) || !(information(i, i) > 0.0)) return false;
   const LensMatrix covariance = information.inverse();
   const double sigma = kNoise_px * std::sqrt(covariance(i, i));
-  const double off = value_(i) + (covariance * pull)(i) - prior_(i);
+  const double off = value_(i) + (covariance * pull)(i)-prior_(i);
   return sigma < prior_sigma / kClear && std::abs(off) > kContradiction * sigma;
 }
 

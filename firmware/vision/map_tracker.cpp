@@ -10,20 +10,28 @@ namespace rfmvo {
 namespace {
 
 constexpr double kKeyframeFlow_rad = 20.0 / 520.0;  // VISION design: rotation-compensated, 20 px at f about 520 px
-constexpr double kRematchFlow = 0.45;   // of that: old landmarks are looked for then, so that not all work comes at once
-constexpr double kKeyframeCommon = 0.7;             // VISION design: of the last key frame's tracks
-constexpr double kMotionHuber_px = 0.6;             // VISION design
-constexpr double kRescueMiss_px = 10.0;             // as far as a patch is looked for
-constexpr int kMinInliers = 12;                     // fewer: no pose
-constexpr double kMinInlierShare = 0.4;             // of the located tracks: below, no pose
-constexpr int kMaxStrikes = 3;                      // frames above the gate before a track is dropped
-constexpr double kMaxExtrapolation = 3.0;           // frames; a constant velocity is not believed longer
-constexpr double kNearest = 0.1;                    // of the median depth: nearer points are not predicted
+constexpr double kRematchFlow = 0.45;  // of that: old landmarks are looked for then, so that not all work comes at once
+constexpr double kKeyframeCommon = 0.7;    // VISION design: of the last key frame's tracks
+constexpr double kMotionHuber_px = 0.6;    // VISION design
+constexpr double kRescueMiss_px = 10.0;    // as far as a patch is looked for
+constexpr int kMinInliers = 12;            // fewer: no pose
+constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
+constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
+constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
+constexpr double kNearest = 0.1;           // of the median depth: nearer points are not predicted
+
+// What a key frame keeps for matching back: the images without their gradients, which are four times as large.
+Pyramid images_only(const Pyramid& pyramid) {
+  Pyramid images = pyramid;
+  for (std::size_t i = 1; i < images.size(); i += 2) images[i].release();
+  return images;
+}
 
 }  // namespace
 
 void MapTracker::begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std::int64_t next_landmark) {
   map_ = std::move(map);
+  for (Keyframe& keyframe : map_.keyframes) keyframe.pyramid = images_only(keyframe.pyramid);
   tracks_ = std::move(tracks);
   next_landmark_ = next_landmark;
   const Keyframe& newest = map_.keyframes.back();
@@ -185,7 +193,8 @@ double MapTracker::flow_since_keyframe() const {
 
 void MapTracker::rematch_tracks(const Pyramid& pyramid) {
   // At most half of the tracks: the other half must be new parts of the scene.
-  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), {.most = options_.max_tracks / 2});
+  const std::vector<Track> again =
+      rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), {.most = options_.max_tracks / 2});
   tracks_.insert(tracks_.end(), again.begin(), again.end());
   std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
   rematched_ = true;
@@ -193,7 +202,7 @@ void MapTracker::rematch_tracks(const Pyramid& pyramid) {
 
 void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
   const std::int64_t id = map_.keyframes.back().id + 1;
-  map_.keyframes.push_back({id, time, T_C_V_, pyramid, twist_});
+  map_.keyframes.push_back({id, time, T_C_V_, images_only(pyramid), twist_});
   settled_.tie(map_, T_C_V_);
   for (const Track& t : tracks_) {
     if (t.strikes == 0) map_.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});

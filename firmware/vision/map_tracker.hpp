@@ -72,7 +72,7 @@ class MapTracker {
   Twist twist_;  // of the newest pose
   double median_depth_ = 1.0;
   SettledPath settled_;
-  bool rematched_ = false;  // since the newest key frame
+  bool rematched_ = false;           // since the newest key frame
   std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made
 };
 

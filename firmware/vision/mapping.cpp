@@ -11,7 +11,7 @@ namespace rfmvo {
 namespace {
 
 constexpr double kBundleHuber_px = 1.0;
-constexpr int kBundleIterations = 3;  // the window was adjusted at the key frame before; measured: 5 change nothing
+constexpr int kBundleIterations = 3;    // the window was adjusted at the key frame before; measured: 5 change nothing
 constexpr double kCullGate = 1.5;       // of the gate: an observation's error after the adjustment
 constexpr std::size_t kGaugeViews = 2;  // VISION design: the oldest 2..5 key frames of a full window stay fixed
 
@@ -130,8 +130,7 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
     const Eigen::Vector3d rough_V = T_C_V.to_V(depth * track.normalised.homogeneous());
     for (const KeyframeObservation& o : landmark.observations) {
       const Keyframe& keyframe = *map.find(o.keyframe);
-      lines.push_back(
-          {keyframe.T_C_V, at_stamp(keyframe, o, rough_V, lens), image_scale(lens.camera(), o.normalised)});
+      lines.push_back({keyframe.T_C_V, at_stamp(keyframe, o, rough_V, lens), image_scale(lens.camera(), o.normalised)});
     }
     lines.push_back({T_C_V, lens.at_stamp(track.normalised, track.px.y, T_C_V * rough_V, twist),
                      image_scale(lens.camera(), track.normalised)});

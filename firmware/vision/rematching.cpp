@@ -88,7 +88,8 @@ std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const 
     const cv::Point2f predicted(static_cast<float>(px->x()), static_cast<float>(px->y()));
     const auto at = align_patch(from.pyramid, pyramid,
                                 {o->px, predicted, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, kCoarsestLevel);
-    if (at && cv::norm(*at - predicted) <= limits.max_miss_px) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
+    if (at && cv::norm(*at - predicted) <= limits.max_miss_px)
+      found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
   }
   return found;
 }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kGoodInliers = 30;  // fewer: degraded
 constexpr double kGoodInlierShare = 0.6;
-constexpr double kGoodSigma = 0.01;          // of the position, over the median depth: above, degraded
-constexpr double kHold_s = 0.25;             // without a pose, then the map is given up ("lost within 0.3 s")
+constexpr double kGoodSigma = 0.01;  // of the position, over the median depth: above, degraded
+constexpr double kHold_s = 0.25;     // without a pose, then the map is given up ("lost within 0.3 s")
 // Of the pose's covariance against the map. The map is extended from key frames, each with its own error, of which
 // the next inherits all; between key frames poses only scatter about the same map. Together, summed over a second,
 // they are as large as the errors (README: nees_per_dof).

@@ -71,7 +71,8 @@ Result<std::vector<simulate::TruePose>> read_truth(const std::string& path) {
     if (!(fields >> t_s >> T.t.x() >> T.t.y() >> T.t.z() >> q[0] >> q[1] >> q[2] >> q[3]) || !(q.norm() > 0.5))
       return Error{ErrorCode::kMalformed, "expects t tx ty tz qx qy qz qw", where};
     const DeviceTime time{Duration::from_seconds(t_s).ns};
-    if (!truth.empty() && time <= truth.back().time) return Error{ErrorCode::kMalformed, "time does not increase", where};
+    if (!truth.empty() && time <= truth.back().time)
+      return Error{ErrorCode::kMalformed, "time does not increase", where};
     T.R.normalize();
     truth.push_back({time, T});
   }
@@ -97,8 +98,9 @@ Result<Run> run(const Options& options) {
     how.camera = camera.value();
   }
   auto result = odometry::run_odometry(*source.value(), how, watch);
-  if (!result) return result.error().where.empty() ? Error{result.error().code, result.error().what, options.input}
-                                                   : result.error();
+  if (!result)
+    return result.error().where.empty() ? Error{result.error().code, result.error().what, options.input}
+                                        : result.error();
   if (result.value().poses.empty()) return Error{ErrorCode::kMalformed, "holds no frame", options.input};
   if (view) {
     if (const Status s = view->close(); !s) return s.error();
@@ -108,8 +110,10 @@ Result<Run> run(const Options& options) {
 
 void print(const nlohmann::ordered_json& figures, const std::string& before = "") {
   for (const auto& [key, value] : figures.items()) {
-    if (value.is_object()) print(value, before + key + ".");
-    else fmt::print("{:<28} {}\n", before + key, value.dump());
+    if (value.is_object())
+      print(value, before + key + ".");
+    else
+      fmt::print("{:<28} {}\n", before + key, value.dump());
   }
 }
 

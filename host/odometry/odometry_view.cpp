@@ -21,10 +21,14 @@ const cv::Scalar kGreen(80, 220, 80), kOrange(40, 160, 255), kRed(60, 60, 240), 
 
 const char* name_of(VoStatus status) {
   switch (status) {
-    case VoStatus::kInitialising: return "INITIALISING";
-    case VoStatus::kTracking: return "TRACKING";
-    case VoStatus::kDegraded: return "DEGRADED";
-    case VoStatus::kLost: return "LOST";
+    case VoStatus::kInitialising:
+      return "INITIALISING";
+    case VoStatus::kTracking:
+      return "TRACKING";
+    case VoStatus::kDegraded:
+      return "DEGRADED";
+    case VoStatus::kLost:
+      return "LOST";
   }
   return "";
 }

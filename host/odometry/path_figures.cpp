@@ -67,9 +67,9 @@ Rigid3 motion_error(const Sample& a, const Sample& b, double scale) {
 
 // First pose at or after t_s.
 std::size_t at_or_after(const Segment& segment, double t_s) {
-  return static_cast<std::size_t>(std::lower_bound(segment.begin(), segment.end(), t_s,
-                                                   [](const Sample& s, double t) { return s.t_s < t; }) -
-                                  segment.begin());
+  return static_cast<std::size_t>(
+      std::lower_bound(segment.begin(), segment.end(), t_s, [](const Sample& s, double t) { return s.t_s < t; }) -
+      segment.begin());
 }
 
 double median_of(std::vector<double> values) {

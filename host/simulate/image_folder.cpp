@@ -76,7 +76,8 @@ Status read_camera(const std::string& directory, CameraModel& camera) {
     if (model != "none" && model != "radtan" && model != "equidistant")
       return "unknown distortion model '" + model + "' (none | radtan | equidistant)";
     if (model == "equidistant") camera.distortion = Distortion::kEquidistant;
-    for (std::size_t i = 0; model == "equidistant" && i < camera.equidistant.size() && words >> camera.equidistant[i]; ++i) {
+    for (std::size_t i = 0; model == "equidistant" && i < camera.equidistant.size() && words >> camera.equidistant[i];
+         ++i) {
     }
     for (std::size_t i = 0; model == "radtan" && i < camera.radtan.size() && words >> camera.radtan[i]; ++i) {
     }

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kNear_m = 0.05;
 constexpr int kJpegQuality = 90;
-constexpr float kEmpty = 40.0F;          // where nothing stands
-constexpr double kBlurStep_px = 1.5;     // between two of the instants that make up an exposure
+constexpr float kEmpty = 40.0F;       // where nothing stands
+constexpr double kBlurStep_px = 1.5;  // between two of the instants that make up an exposure
 constexpr int kMaxInstants = 6;
-constexpr double kBlurProbe_m = 1.5;     // where blur is measured
+constexpr double kBlurProbe_m = 1.5;  // where blur is measured
 
 // A surface in the camera frame with what each pixel needs: 1/z, u and v are rational in the ray (x, y, 1).
 struct Facing {

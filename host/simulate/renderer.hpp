@@ -14,11 +14,11 @@ namespace rfmvo::simulate {
 
 // How the camera takes a picture. The stamp is the middle of the exposure of the middle row.
 struct CameraEffects {
-  double exposure_s = 0.0;     // motion blur
-  double readout_s = 0.0;      // rolling shutter: from the first row to the last; 0: global
-  double lens_blur_px = 0.7;   // 1 sigma; also softens the rasteriser's stairs
-  double noise_grey = 1.5;     // 1 sigma, of 8 bits
-  double vignetting = 0.0;     // share of the light that the corners lack
+  double exposure_s = 0.0;             // motion blur
+  double readout_s = 0.0;              // rolling shutter: from the first row to the last; 0: global
+  double lens_blur_px = 0.7;           // 1 sigma; also softens the rasteriser's stairs
+  double noise_grey = 1.5;             // 1 sigma, of 8 bits
+  double vignetting = 0.0;             // share of the light that the corners lack
   std::function<double(double)> gain;  // of the exposure control at a time (s); empty: 1
 };
 

@@ -94,29 +94,26 @@ std::vector<Vector3d> add_rack_row(Environment& e, const Rigid3& T_S_R, double l
 // A wall that looks to its right-hand normal: `right` along the wall as the viewer sees it.
 void add_wall(Environment& e, const Vector3d& corner, const Vector3d& right, double width_m, double height_m,
               const TexturePointer& texture, double texels_per_m) {
-  e.surfaces.push_back({corner, right, -Vector3d::UnitZ(), width_m, height_m, texture,
-                        {texels_per_m, texels_per_m}, 0.85F});
+  e.surfaces.push_back(
+      {corner, right, -Vector3d::UnitZ(), width_m, height_m, texture, {texels_per_m, texels_per_m}, 0.85F});
 }
 
-void add_floor_and_ceiling(Environment& e, const Vector3d& low, const Vector3d& high, double ceiling_m,
-                           Random& look) {
+void add_floor_and_ceiling(Environment& e, const Vector3d& low, const Vector3d& high, double ceiling_m, Random& look) {
   const TexturePointer floor = concrete_texture(look), roof = steel_texture(look);
   const auto lamp = std::make_shared<const Texture>(2, std::vector<float>(16, 255.0F));
   const double width_m = high.x() - low.x(), depth_m = high.y() - low.y();
-  e.surfaces.push_back({{low.x(), high.y(), 0.0}, Vector3d::UnitX(), -Vector3d::UnitY(), width_m, depth_m, floor,
-                        {420, 420}, 0.9F});
-  e.surfaces.push_back({{low.x(), low.y(), ceiling_m}, Vector3d::UnitX(), Vector3d::UnitY(), width_m, depth_m, roof,
-                        {60, 60}, 0.6F});
+  e.surfaces.push_back(
+      {{low.x(), high.y(), 0.0}, Vector3d::UnitX(), -Vector3d::UnitY(), width_m, depth_m, floor, {420, 420}, 0.9F});
+  e.surfaces.push_back(
+      {{low.x(), low.y(), ceiling_m}, Vector3d::UnitX(), Vector3d::UnitY(), width_m, depth_m, roof, {60, 60}, 0.6F});
   const double middle_y = 0.5 * (low.y() + high.y());
   for (double x = low.x() + 0.5 * kLampPitch_m; x < high.x(); x += kLampPitch_m) {
-    e.surfaces.push_back({{x, middle_y - 0.15, ceiling_m - 0.05}, Vector3d::UnitX(), Vector3d::UnitY(), 1.2, 0.3, lamp,
-                          {2, 2}, 1.0F});
+    e.surfaces.push_back(
+        {{x, middle_y - 0.15, ceiling_m - 0.05}, Vector3d::UnitX(), Vector3d::UnitY(), 1.2, 0.3, lamp, {2, 2}, 1.0F});
   }
 }
 
-Rigid3 facing_back(const Vector3d& p) {
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Vector3d::UnitZ())), p};
-}
+Rigid3 facing_back(const Vector3d& p) { return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Vector3d::UnitZ())), p}; }
 
 // Two boxes for the legs, one for the body, one for the head.
 void add_body(Environment& body, Random& look) {
@@ -142,7 +139,8 @@ std::vector<Vector3d> build_warehouse(Environment& e, std::uint64_t seed) {
   const Goods goods = make_goods(look);
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
   const double length_m = kCrossAisleBegin_m - kRackBegin_m, behind_m = kLeftRack_m + 2.0 * kRackDepth_m;
-  const auto places = add_rack_row(e, {Eigen::Quaterniond::Identity(), {kRackBegin_m, kLeftRack_m, 0}}, length_m, goods, random);
+  const auto places =
+      add_rack_row(e, {Eigen::Quaterniond::Identity(), {kRackBegin_m, kLeftRack_m, 0}}, length_m, goods, random);
   add_rack_row(e, facing_back({kCrossAisleBegin_m, behind_m, 0}), length_m, goods, random);
   add_rack_row(e, {Eigen::Quaterniond::Identity(), {kRackBegin_m, behind_m + 3.0, 0}}, length_m, goods, random);
   add_rack_row(e, {Eigen::Quaterniond::Identity(), {kCrossAisleEnd_m, kLeftRack_m, 0}}, 8.0, goods, random);

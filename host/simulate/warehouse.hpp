@@ -9,13 +9,14 @@
 
 namespace rfmvo::simulate {
 
-inline constexpr double kLeftRack_m = 1.6;         // front of the racks on the left
-inline constexpr double kRackBegin_m = -4.0;       // of the left racks
+inline constexpr double kLeftRack_m = 1.6;    // front of the racks on the left
+inline constexpr double kRackBegin_m = -4.0;  // of the left racks
 inline constexpr double kCrossAisleBegin_m = 12.0, kCrossAisleEnd_m = 15.0;
 inline constexpr double kCorridorHalfWidth_m = 1.3;
 inline constexpr double kCorridorEnd_m = 24.0;
 
-// Returns where labels would be stuck on cartons of the left racks, seen from the aisle: along x, between 0.4 and 1.7 m up.
+// Returns where labels would be stuck on cartons of the left racks, seen from the aisle: along x, between 0.4 and 1.7 m
+// up.
 std::vector<Eigen::Vector3d> build_warehouse(Environment& environment, std::uint64_t seed);
 
 // From x = -3 m to kCorridorEnd_m; a place on the left wall every 1.2 m.

@@ -2,12 +2,11 @@
 // (0.10 % of the path, 0.7 % of scale from half to half) and SVO (0.12 %, 1.2 %) on such drives, or as good.
 #include <gtest/gtest.h>
 
+#include "edges/lcm_codec.hpp"
 #include "odometry/odometry_report.hpp"
 #include "odometry/odometry_run.hpp"
 #include "simulate/simulation.hpp"
 #include "vision/visual_odometry.hpp"
-
-#include "edges/lcm_codec.hpp"
 
 namespace rfmvo {
 namespace {

@@ -1,7 +1,7 @@
 // Calibrations of other tools: the same camera, however it is written.
-#include "edges/camera_file.hpp"
-
 #include <gtest/gtest.h>
+
+#include "edges/camera_file.hpp"
 
 namespace rfmvo {
 namespace {

@@ -1,10 +1,9 @@
 // The figures of `rfmvo vo` against paths whose errors are known by construction.
-#include "odometry/path_figures.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "odometry/path_figures.hpp"
 #include "simulate/random.hpp"
 
 namespace rfmvo::odometry {
@@ -54,7 +53,8 @@ TEST(PathFigures, StepNoiseIsRootTwoOfWhitePositionNoisePerAxis) {
   World world = perfect(3000);
   simulate::Random random(3, "noise");
   constexpr double kSigma = 0.001;
-  for (auto& p : world.path) p.T_V_C.p_V_C += kSigma * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+  for (auto& p : world.path)
+    p.T_V_C.p_V_C += kSigma * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
   const auto f = path_figures(world.path, world.truth);
   // 1000 steps of 3 axes: the estimate of a standard deviation scatters by 1 / sqrt(2 * 3000) = 1.3 %.
   EXPECT_NEAR(f->step_noise_m, std::sqrt(2.0) * kSigma * kUnit_m, 0.06 * kSigma * kUnit_m);

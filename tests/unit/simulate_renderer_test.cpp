@@ -112,7 +112,8 @@ TEST(Renderer, MotionBlursAnEdgeByTheWayOfTheExposure) {
   const auto path = [](double t_s) { return Rigid3{kLooking.R, {1.0 * t_s, 0.0, 0.0}}; };
   const auto picture = render_moving(e, camera, path, 0.0, slow);
   int between = 0;  // neither the wall nor what is beside it
-  for (int x = 0; x < camera.width_px; ++x) between += pixel(picture, camera, x, 240) > 60 && pixel(picture, camera, x, 240) < 190;
+  for (int x = 0; x < camera.width_px; ++x)
+    between += pixel(picture, camera, x, 240) > 60 && pixel(picture, camera, x, 240) < 190;
   const double way_px = camera.fx_px * 1.0 * slow.exposure_s / 1.5;
   EXPECT_NEAR(between, way_px, 1.5);
 }
@@ -135,13 +136,15 @@ TEST(Renderer, TheCrowdCoversUpToTwoFifths) {
 }
 
 TEST(Renderer, EveryDriveShowsSomethingAllTheWay) {
-  for (const char* name : {"shelf05", "shelf1", "shelf1rs", "shelfturn", "shelfstop", "shelfdiag", "crowd", "dark", "corridor"}) {
+  for (const char* name :
+       {"shelf05", "shelf1", "shelf1rs", "shelfturn", "shelfstop", "shelfdiag", "crowd", "dark", "corridor"}) {
     Options options;
     options.scene = name;
     const Scene scene = make_scene(options).value();
     EXPECT_GE(scene.tags.size(), 5U) << name;
     const std::size_t last = scene.frame_times_s.size() - 1;
-    for (const std::size_t k : {std::size_t{0}, last / 2, last}) EXPECT_GT(scene.frame(k).value().encoded->size(), 15'000U) << name;
+    for (const std::size_t k : {std::size_t{0}, last / 2, last})
+      EXPECT_GT(scene.frame(k).value().encoded->size(), 15'000U) << name;
   }
 }
 
