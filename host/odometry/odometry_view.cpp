@@ -37,8 +37,8 @@ const char* name_of(VoStatus status) {
 struct Plan {
   double x0, z0, px_per_unit;
   [[nodiscard]] cv::Point at(const Eigen::Vector3d& p) const {
-    return {kPaneWidth_px + static_cast<int>((p.x() - x0) * px_per_unit) + kPaneWidth_px / 2,
-            kPaneHeight_px / 2 - static_cast<int>((p.z() - z0) * px_per_unit)};
+    const auto px = [this](double d) { return static_cast<int>(std::clamp(d * px_per_unit, -1e4, 1e4)); };
+    return {kPaneWidth_px + kPaneWidth_px / 2 + px(p.x() - x0), kPaneHeight_px / 2 - px(p.z() - z0)};
   }
 };
 

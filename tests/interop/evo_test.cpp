@@ -35,8 +35,8 @@ constexpr const char* kReadZip = R"(import io, json, sys, zipfile
 import numpy as np
 z = zipfile.ZipFile(sys.argv[1])
 stats = json.loads(z.read('stats.json'))
-name = [n for n in z.namelist() if 'alignment_transformation' in n][0]
-T = np.load(io.BytesIO(z.read(name)))
+names = [n for n in z.namelist() if 'alignment_transformation' in n]
+T = np.load(io.BytesIO(z.read(names[0]))) if names else np.eye(4)
 print(json.dumps({'rmse': stats['rmse'], 'scale': float(np.cbrt(np.linalg.det(T[:3, :3])))}))
 )";
 
