@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <numeric>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <sstream>
@@ -184,6 +185,16 @@ INSTANTIATE_TEST_SUITE_P(WallsAndShelves, Pass, testing::Combine(testing::Bool()
 TEST(VisualOdometry, SameFramesGiveTheSameBits) {
   const auto once = [] { return run(shelf(), 2.0, [](double t) { return pass(t, 0.7); }); };
   expect_equal_bits(once(), once());
+}
+
+TEST(VisualOdometry, OneThreadOrTwoGiveTheSameBits) {
+  const auto with = [](int threads) {
+    cv::setNumThreads(threads);
+    return run(shelf(), 2.0, [](double t) { return pass(t, 0.7); });
+  };
+  const Sequence one = with(1), two = with(2);
+  cv::setNumThreads(1);
+  expect_equal_bits(one, two);
 }
 
 TEST(VisualOdometry, BrighterPicturesGiveTheSamePath) {
