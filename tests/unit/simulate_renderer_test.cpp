@@ -87,6 +87,7 @@ TEST(Renderer, ARollingShutterReadsEachRowAtItsTime) {
   const CameraModel camera;
   Environment e;
   e.surfaces.push_back(facing(-3, 2, 1.5, 6, 4, checkerboard_texture(16)));
+  e.surfaces.back().texels_per_m = {256, 256};  // squares of 42 px
   const auto path = [](double t_s) {
     return Rigid3{(kLooking.R * so3_exp({0.1 * t_s, 0.3 * t_s, 0.0})).normalized(), {1.0 * t_s, 0.05 * t_s, 0.0}};
   };
