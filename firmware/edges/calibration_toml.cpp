@@ -60,11 +60,14 @@ class Section {
     return out;
   }
 
-  std::string text(std::string_view key, std::string_view only) {
+  // One of two; the first if the key is missing.
+  std::string text(std::string_view key, std::string_view first, std::string_view second) {
     const toml::node* node = find(key);
-    if (node != nullptr && !error_ && (!node->is_string() || node->as_string()->get() != only))
-      fail(key, *node, "expects \"" + std::string(only) + "\", the only one that is known");
-    return std::string(only);
+    if (node == nullptr || error_) return std::string(first);
+    if (node->is_string() && (node->as_string()->get() == first || node->as_string()->get() == second))
+      return node->as_string()->get();
+    fail(key, *node, "expects \"" + std::string(first) + "\" or \"" + std::string(second) + "\"");
+    return std::string(first);
   }
 
   template <std::size_t N>
@@ -132,7 +135,8 @@ Result<CameraModel> camera_of(const toml::table& table, const std::string& where
   Section s(table, "camera", where);
   for (const char* key : {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"}) s.require(key);
   CameraModel c;
-  (void)s.text("model", "radtan");
+  const std::string model = s.text("model", "radtan", "equidistant");
+  if (model == "equidistant") c.distortion = Distortion::kEquidistant;
   c.width_px = s.whole("width_px", "px", 1, static_cast<int>(kMaxSide_px), c.width_px);
   c.height_px = s.whole("height_px", "px", 1, static_cast<int>(kMaxSide_px), c.height_px);
   c.fx_px = s.number("fx_px", "px", 1, kMaxFocalLength_px, c.fx_px);
@@ -140,6 +144,7 @@ Result<CameraModel> camera_of(const toml::table& table, const std::string& where
   c.cx_px = s.number("cx_px", "px", -kMaxSide_px, 2 * kMaxSide_px, c.cx_px);
   c.cy_px = s.number("cy_px", "px", -kMaxSide_px, 2 * kMaxSide_px, c.cy_px);
   c.radtan = s.numbers<5>("radtan", "", kMaxDistortion, c.radtan);
+  c.equidistant = s.numbers<4>("equidistant", "", kMaxDistortion, c.equidistant);
   s.reject_unknown();
   if (s.error()) return *s.error();
   return c;
@@ -240,10 +245,15 @@ Result<Calibration> read_calibration(const std::string& path) {
 std::string to_toml(const Calibration& calibration) {
   const CameraModel& c = calibration.camera;
   const Eigen::Quaterniond& q = calibration.T_B_C.R;
-  std::string out = "[camera]\nmodel = \"radtan\"\n";
+  const bool fisheye = c.distortion == Distortion::kEquidistant;
+  std::string out = std::string("[camera]\nmodel = ") + (fisheye ? "\"equidistant\"\n" : "\"radtan\"\n");
   out += "width_px = " + std::to_string(c.width_px) + "\nheight_px = " + std::to_string(c.height_px) + "\n";
   out += "fx_px = " + text_of(c.fx_px) + "\nfy_px = " + text_of(c.fy_px) + "\n";
   out += "cx_px = " + text_of(c.cx_px) + "\ncy_px = " + text_of(c.cy_px) + "\n";
+  if (fisheye) {
+    out += "# k1, k2, k3, k4\nequidistant = " +
+           list_of({c.equidistant[0], c.equidistant[1], c.equidistant[2], c.equidistant[3]}) + "\n";
+  }
   out += "# k1, k2, p1, p2, k3\n";
   out += "radtan = " + list_of({c.radtan[0], c.radtan[1], c.radtan[2], c.radtan[3], c.radtan[4]}) + "\n";
   out += "\n# T_B_C: the camera on the cart (x forward, y left, z up)\n[mounting]\n";

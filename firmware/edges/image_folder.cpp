@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "edges/camera_file.hpp"
 #include "edges/lcm_codec.hpp"
 #include "edges/text_file.hpp"
 
@@ -14,7 +15,7 @@ namespace rfmvo {
 namespace {
 
 constexpr std::uintmax_t kMaxImageFileBytes = std::uintmax_t{1} << 27;  // as in the journal
-constexpr double kMaxTime_s = 9e9;  // year 2255; fits nanoseconds
+constexpr double kMaxTime_s = 9e9;                                      // year 2255; fits nanoseconds
 
 struct Entry {
   DeviceTime time;
@@ -40,27 +41,14 @@ Result<std::vector<std::pair<std::size_t, std::string>>> lines_of(const std::str
   return lines;
 }
 
-Result<CameraModel> read_camera(const std::string& path) {
-  const auto lines = lines_of(path);
-  if (!lines) return lines.error();
-  if (lines.value().size() != 1)
-    return Error{ErrorCode::kMalformed, "expects one line: fx fy cx cy width height model d0 d1 ...", path};
-  const auto& [number, line] = lines.value().front();
-  std::istringstream fields(line);
-  CameraModel c;
-  std::string model;
-  fields >> c.fx_px >> c.fy_px >> c.cx_px >> c.cy_px >> c.width_px >> c.height_px >> model;
-  if (!fields || c.fx_px <= 0 || c.fy_px <= 0 || c.width_px < 1 || c.height_px < 1)
-    return at_line(path, number, "expects fx fy cx cy width height model d0 d1 ..., in px");
-  if (model != "radtan" && model != "none") return at_line(path, number, "unknown camera model \"" + model + "\"; known: radtan, none");
-  std::size_t count = 0;
-  for (double d = 0.0; fields >> d; ++count) {
-    if (count >= c.radtan.size() || model == "none") return at_line(path, number, "too many distortion numbers");
-    c.radtan[count] = d;
+// calib.txt, or a calibration of another tool where there is none.
+Result<CameraModel> read_camera(const std::string& directory) {
+  for (const char* name : {"camchain.yaml", "camera_info.yaml", "calibration.yaml", "camera.yaml", "calib.yaml"}) {
+    const std::string path = directory + "/" + name;
+    if (!std::filesystem::exists(directory + "/calib.txt") && std::filesystem::exists(path))
+      return read_camera_file(path);
   }
-  if (!fields.eof() || (model == "radtan" && count < 4))
-    return at_line(path, number, "radtan expects 4 or 5 distortion numbers: k1 k2 p1 p2 [k3]");
-  return c;
+  return read_camera_line(directory + "/calib.txt");
 }
 
 std::string encoding_of(const std::string& name) {
@@ -103,6 +91,34 @@ Result<std::shared_ptr<const std::vector<std::uint8_t>>> read_bytes(const std::s
 
 }  // namespace
 
+Result<CameraModel> read_camera_line(const std::string& path) {
+  const auto lines = lines_of(path);
+  if (!lines) return lines.error();
+  if (lines.value().size() != 1)
+    return Error{ErrorCode::kMalformed, "expects one line: fx fy cx cy width height model d0 d1 ...", path};
+  const auto& [number, line] = lines.value().front();
+  std::istringstream fields(line);
+  CameraModel c;
+  std::string model;
+  fields >> c.fx_px >> c.fy_px >> c.cx_px >> c.cy_px >> c.width_px >> c.height_px >> model;
+  if (!fields || c.fx_px <= 0 || c.fy_px <= 0 || c.width_px < 1 || c.height_px < 1)
+    return at_line(path, number, "expects fx fy cx cy width height model d0 d1 ..., in px");
+  const bool fisheye = model == "equidistant";
+  if (model != "radtan" && model != "none" && !fisheye)
+    return at_line(path, number, "unknown camera model \"" + model + "\"; known: radtan, equidistant, none");
+  if (fisheye) c.distortion = Distortion::kEquidistant;
+  std::size_t count = 0;
+  for (double d = 0.0; fields >> d; ++count) {
+    if (count >= (fisheye ? c.equidistant.size() : c.radtan.size()) || model == "none")
+      return at_line(path, number, "too many distortion numbers");
+    (fisheye ? c.equidistant[count] : c.radtan[count]) = d;
+  }
+  if (fisheye && count != 4) return at_line(path, number, "equidistant expects 4 distortion numbers: k1 k2 k3 k4");
+  if (!fields.eof() || (model == "radtan" && count < 4))
+    return at_line(path, number, "radtan expects 4 or 5 distortion numbers: k1 k2 p1 p2 [k3]");
+  return c;
+}
+
 struct ImageFolder::Impl {
   CameraModel camera;
   std::vector<Entry> entries;
@@ -114,7 +130,7 @@ ImageFolder::ImageFolder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ImageFolder::~ImageFolder() = default;
 
 Result<std::unique_ptr<ImageFolder>> ImageFolder::open(const std::string& directory) {
-  auto camera = read_camera(directory + "/calib.txt");
+  auto camera = read_camera(directory);
   if (!camera) return camera.error();
   auto entries = read_times(directory);
   if (!entries) return entries.error();

@@ -1,5 +1,6 @@
 // A recorded image sequence as a camera: DIR/times.txt with lines "t filename" (seconds), the images,
-// and DIR/calib.txt with "fx fy cx cy width height model d0 d1 ..." (px; model: none or radtan).
+// and DIR/calib.txt with "fx fy cx cy width height model d0 d1 ..." (px; model: none, radtan or
+// equidistant); without a calib.txt, camchain.yaml, camera_info.yaml, calibration.yaml, camera.yaml or calib.yaml.
 // Lines that begin with # are comments.
 #pragma once
 
@@ -10,6 +11,9 @@
 #include "edges/event_io.hpp"
 
 namespace rfmvo {
+
+// The one line of a calib.txt. Errors name file and line.
+[[nodiscard]] Result<CameraModel> read_camera_line(const std::string& path);
 
 class ImageFolder : public EventSource {
  public:

@@ -19,6 +19,7 @@ struct BundleObservation {
   int point = 0;
   Eigen::Vector2d measured;                    // normalised image plane, undistorted
   LensJacobian d_lens = LensJacobian::Zero();  // d measured / d lens
+  double scale = 1.0;                          // image_scale() there
 };
 
 // What all views share: a step of the lens from where `measured` was computed.
@@ -48,7 +49,9 @@ struct BundleReport {
   double initial_cost = 0.0;  // sum of Huber costs, px^2
   double final_cost = 0.0;
   int iterations = 0;
-  LensMatrix lens_information = LensMatrix::Zero();  // of the images alone, px^2
+  // Of the images alone, where the adjustment ended: information (px^2), and information times the step they want.
+  LensMatrix lens_information = LensMatrix::Zero();
+  LensVector lens_pull = LensVector::Zero();
 };
 
 BundleReport adjust_bundle(BundleProblem& problem, const BundleOptions& options);

@@ -3,6 +3,11 @@
 #include "vision/corners.hpp"
 
 namespace rfmvo {
+namespace {
+
+constexpr double kWidest = 2.5;  // of the normalised plane, 68 degrees from the axis: beyond, a fisheye lens smears
+
+}  // namespace
 
 std::vector<Track> advanced(std::span<const Track> tracks, const Pyramid& from, const Pyramid& to,
                             std::span<const cv::Point2f> predicted_px, const CameraModel& camera) {
@@ -13,7 +18,7 @@ std::vector<Track> advanced(std::span<const Track> tracks, const Pyramid& from, 
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!flow[i].ok) continue;
     const cv::Point2f px = flow[i].at_px;
-    result.push_back({tracks[i].landmark, px, unproject(camera, {px.x, px.y}), tracks[i].strikes});
+    result.push_back({tracks[i].landmark, px, unproject(camera, {px.x, px.y}), tracks[i].strikes, tracks[i].fresh});
   }
   return result;
 }
@@ -24,7 +29,8 @@ void refill(std::vector<Track>& tracks, const cv::Mat& grey, const CameraModel& 
   for (const Track& t : tracks) occupied.push_back(t.px);
   const int missing = max_tracks - static_cast<int>(tracks.size());
   for (const cv::Point2f& px : find_corners(grey, occupied, max_tracks, missing)) {
-    tracks.push_back({next_landmark++, px, unproject(camera, {px.x, px.y}), 0});
+    const Eigen::Vector2d normalised = unproject(camera, {px.x, px.y});
+    if (normalised.norm() < kWidest) tracks.push_back({next_landmark++, px, normalised});
   }
 }
 

@@ -12,8 +12,11 @@ namespace {
 constexpr double kNoise_px = 2.0;
 constexpr double kMemory = 0.98;           // of a window for the next one: a lens changes slowly
 constexpr double kWindowShare = 1.0 / 15;  // of a window's pictures that the next one lacks
-// How much smaller than the prior's a window's sigma is, for k1 and readout, when the lens is let go.
-constexpr double kClear[] = {7.0, 5.0};                    // measured: looser ones bend the rendered aisle
+// A window contradicts the calibration of k1 or readout if it sees them this many of its sigmas away, and sees them
+// this much better than the prior. Measured with kNoise_px: up to 1 where the calibration is right, 4 and more where
+// not.
+constexpr double kContradiction = 3.0;
+constexpr double kClear = 3.0;
 constexpr double kSettled_k1 = 0.001, kSettled_s = 0.001;  // steps that hardly show: 0.2 px in the corner
 constexpr double kHeld = 1e12;                             // information of what must not move, px^2
 
@@ -33,12 +36,12 @@ Eigen::Vector2d image_flow_s(const Eigen::Vector3d& p_C, const Twist& twist) {
 }
 
 Eigen::Vector2d d_unproject_d_k1(const CameraModel& camera, const Eigen::Vector2d& n) {
-  return -distort_jacobian(camera, n).partialPivLu().solve(n * n.squaredNorm());
+  return -distort_jacobian(camera, n).partialPivLu().solve(distort_d_k1(camera, n));
 }
 
 Lens::Lens(const CameraModel& calibrated, const LensPrior& prior)
     : camera_(calibrated),
-      prior_(calibrated.radtan[0], prior.readout_s),
+      prior_(k1_of(calibrated), prior.readout_s),
       value_(prior_),
       carried_(prior_),
       free_(prior.k1_sigma > 0.0 || prior.readout_sigma_s > 0.0) {
@@ -77,13 +80,23 @@ LensVector Lens::expected_step() const {
   return step;
 }
 
-void Lens::learn(const LensVector& step, const LensMatrix& window_information) {
+bool Lens::contradicted(int i, const LensMatrix& information, const LensVector& pull) const {
+  const double prior_sigma = kNoise_px / std::sqrt(prior_information_(i, i));
+  if (!(information.determinant() > 0.0) || !(information(i, i) > 0.0)) return false;
+  const LensMatrix covariance = information.inverse();
+  const double sigma = kNoise_px * std::sqrt(covariance(i, i));
+  const double off = value_(i) + (covariance * pull)(i)-prior_(i);
+  return sigma < prior_sigma / kClear && std::abs(off) > kContradiction * sigma;
+}
+
+void Lens::learn(const LensVector& step, const LensMatrix& window_information, const LensVector& window_pull) {
+  ++windows_;
   value_ += step;
-  camera_.radtan[0] = value_(0);
+  set_k1(camera_, value_(0));
   settling_ = std::abs(step(0)) > kSettled_k1 || std::abs(step(1)) > kSettled_s;
   for (int i = 0; i < 2; ++i) {
     const bool before = shown_[i];
-    shown_[i] = shown_[i] || window_information(i, i) > kClear[i] * kClear[i] * prior_information_(i, i);
+    shown_[i] = shown_[i] || contradicted(i, window_information, window_pull);
     settling_ = settling_ || shown_[i] != before;
   }
   if (!shown_[0] && !shown_[1]) return;

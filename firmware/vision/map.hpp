@@ -52,7 +52,8 @@ struct Track {
   std::int64_t landmark = 0;
   cv::Point2f px;
   Eigen::Vector2d normalised;
-  int strikes = 0;  // frames in a row with an error above the gate
+  int strikes = 0;     // frames in a row with an error above the gate
+  bool fresh = false;  // matched back just now: it has to fit at once
 };
 
 }  // namespace rfmvo

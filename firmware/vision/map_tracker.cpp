@@ -10,18 +10,28 @@ namespace rfmvo {
 namespace {
 
 constexpr double kKeyframeFlow_rad = 20.0 / 520.0;  // VISION design: rotation-compensated, 20 px at f about 520 px
-constexpr double kKeyframeCommon = 0.7;             // VISION design: of the last key frame's tracks
-constexpr double kMotionHuber_px = 0.6;             // VISION design
-constexpr int kMinInliers = 12;                     // fewer: no pose
-constexpr double kMinInlierShare = 0.4;             // of the located tracks: below, no pose
-constexpr int kMaxStrikes = 3;                      // frames above the gate before a track is dropped
-constexpr double kMaxExtrapolation = 3.0;           // frames; a constant velocity is not believed longer
-constexpr double kNearest = 0.1;                    // of the median depth: nearer points are not predicted
+constexpr double kRematchFlow = 0.45;  // of that: old landmarks are looked for then, so that not all work comes at once
+constexpr double kKeyframeCommon = 0.7;    // VISION design: of the last key frame's tracks
+constexpr double kMotionHuber_px = 0.6;    // VISION design
+constexpr double kRescueMiss_px = 10.0;    // as far as a patch is looked for
+constexpr int kMinInliers = 12;            // fewer: no pose
+constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
+constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
+constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
+constexpr double kNearest = 0.1;           // of the median depth: nearer points are not predicted
+
+// What a key frame keeps for matching back: the images without their gradients, which are four times as large.
+Pyramid images_only(const Pyramid& pyramid) {
+  Pyramid images = pyramid;
+  for (std::size_t i = 1; i < images.size(); i += 2) images[i].release();
+  return images;
+}
 
 }  // namespace
 
 void MapTracker::begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std::int64_t next_landmark) {
   map_ = std::move(map);
+  for (Keyframe& keyframe : map_.keyframes) keyframe.pyramid = images_only(keyframe.pyramid);
   tracks_ = std::move(tracks);
   next_landmark_ = next_landmark;
   const Keyframe& newest = map_.keyframes.back();
@@ -38,7 +48,12 @@ void MapTracker::begin(Map map, std::vector<Track> tracks, Pyramid pyramid, std:
   twist_ = newest.twist;
   fill_up(pyramid);
   update_median_depth();
+  settled_.add(pose_time_, T_C_V_, map_);
   previous_ = std::move(pyramid);
+}
+
+std::vector<SettledPose> MapTracker::take_settled(bool segment_ends) {
+  return segment_ends ? settled_.rest(map_) : settled_.due(pose_time_, map_);
 }
 
 const Landmark* MapTracker::located(const Track& track) const {
@@ -75,7 +90,8 @@ MotionSolution MapTracker::locate_camera(const ViewPose& predicted, DeviceTime t
     const Landmark* landmark = located(followed[i]);
     if (!landmark) continue;
     const Track& t = followed[i];
-    seen.push_back({landmark->p_V, lens_.at_stamp(t.normalised, t.px.y, predicted * landmark->p_V, twist)});
+    seen.push_back({landmark->p_V, lens_.at_stamp(t.normalised, t.px.y, predicted * landmark->p_V, twist),
+                    image_scale(lens_.camera(), t.normalised)});
     track_of.push_back(i);
   }
   const MotionOptions options{options_.mapping.focal_px, kMotionHuber_px, options_.mapping.gate_px};
@@ -89,8 +105,8 @@ MotionSolution MapTracker::locate_camera(const ViewPose& predicted, DeviceTime t
   }
   if (!enough(s)) s.inliers = 0;
   for (std::size_t k = 0; k < track_of.size(); ++k) {
-    int& strikes = followed[track_of[k]].strikes;
-    strikes = s.error_px[k] <= options.gate_px ? 0 : strikes + 1;
+    Track& t = followed[track_of[k]];
+    t.strikes = s.error_px[k] <= options.gate_px ? 0 : t.fresh ? kMaxStrikes : t.strikes + 1;
   }
   return s;
 }
@@ -99,6 +115,13 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   const ViewPose predicted = predict(time);
   std::vector<Track> followed = advanced(tracks_, previous_, pyramid, predict_tracks(predicted), lens_.camera());
   MotionSolution s = locate_camera(predicted, time, followed);
+  if (s.inliers == 0) {
+    // The light has changed at once, or pictures are missing: the map's patches, gain and offset free, may still be
+    // found about where they should be.
+    followed = rematch(map_, {}, pyramid, predicted, lens_.camera(), {options_.max_tracks, kRescueMiss_px});
+    for (Track& t : followed) t.fresh = false;
+    s = locate_camera(predicted, time, followed);
+  }
   if (s.inliers == 0) return std::nullopt;
   realign(map_, followed, pyramid, s.T_C_V, lens_.camera());
   s = locate_camera(s.T_C_V, time, followed);
@@ -107,12 +130,21 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);
   std::erase_if(tracks_, [](const Track& t) { return t.strikes >= kMaxStrikes; });
+  std::ptrdiff_t kept = 0;  // located before this frame
+  for (Track& t : tracks_) {
+    t.fresh = false;
+    kept += located(t) != nullptr;
+  }
   locate_landmarks(map_, tracks_, T_C_V_, twist_, lens_, median_depth_, options_.mapping);
   update_median_depth();
-  if (wants_keyframe()) add_keyframe(time, pyramid);
+  settled_.add(time, T_C_V_, map_);
+  const double flow = flow_since_keyframe();
+  const bool keyframe = flow >= 1.0;
+  if (!rematched_ && flow >= kRematchFlow) rematch_tracks(pyramid);
+  if (keyframe) add_keyframe(time, pyramid);
   previous_ = pyramid;
-  const double share = static_cast<double>(s.inliers) / static_cast<double>(s.error_px.size());
-  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance};
+  const double share = std::min(1.0, static_cast<double>(s.inliers) / static_cast<double>(kept));
+  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance, keyframe};
 }
 
 void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
@@ -140,7 +172,7 @@ void MapTracker::update_median_depth() {
   median_depth_ = *middle;
 }
 
-bool MapTracker::wants_keyframe() const {
+double MapTracker::flow_since_keyframe() const {
   const Keyframe& last = map_.keyframes.back();
   const Eigen::Quaterniond R = T_C_V_.R_C_V * last.T_C_V.R_C_V.conjugate();
   std::vector<double> flows;
@@ -152,21 +184,26 @@ bool MapTracker::wants_keyframe() const {
     flows.push_back((t.normalised - (R * o.normalised.homogeneous()).hnormalized()).norm());
   }
   if (flows.empty() || static_cast<double>(flows.size()) < kKeyframeCommon * static_cast<double>(keyframe_tracks_)) {
-    return true;
+    return 1.0;
   }
   const auto middle = flows.begin() + static_cast<std::ptrdiff_t>(flows.size() / 2);
   std::nth_element(flows.begin(), middle, flows.end());
-  return *middle > kKeyframeFlow_rad;
+  return *middle / kKeyframeFlow_rad;
+}
+
+void MapTracker::rematch_tracks(const Pyramid& pyramid) {
+  // At most half of the tracks: the other half must be new parts of the scene.
+  const std::vector<Track> again =
+      rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), {.most = options_.max_tracks / 2});
+  tracks_.insert(tracks_.end(), again.begin(), again.end());
+  std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
+  rematched_ = true;
 }
 
 void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
-  // At most half of the tracks: the other half must be new parts of the scene.
-  const std::vector<Track> again = rematch(map_, tracks_, pyramid, T_C_V_, lens_.camera(), options_.max_tracks / 2);
-  tracks_.insert(tracks_.end(), again.begin(), again.end());
-  std::sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.landmark < b.landmark; });
-
   const std::int64_t id = map_.keyframes.back().id + 1;
-  map_.keyframes.push_back({id, time, T_C_V_, pyramid, twist_});
+  map_.keyframes.push_back({id, time, T_C_V_, images_only(pyramid), twist_});
+  settled_.tie(map_, T_C_V_);
   for (const Track& t : tracks_) {
     if (t.strikes == 0) map_.landmarks[t.landmark].observations.push_back({id, t.px, t.normalised});
   }
@@ -177,6 +214,7 @@ void MapTracker::add_keyframe(DeviceTime time, const Pyramid& pyramid) {
   T_C_V_ = map_.keyframes.back().T_C_V;
   fill_up(pyramid);
   forget_old(map_, tracks_, options_.mapping);
+  rematched_ = false;
 }
 
 void MapTracker::fill_up(const Pyramid& pyramid) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "vision/lens.hpp"
 #include "vision/map.hpp"
 #include "vision/mapping.hpp"
 #include "vision/motion_solver.hpp"
+#include "vision/settled_path.hpp"
 
 namespace rfmvo {
 
@@ -19,9 +21,10 @@ struct MapTrackerOptions {
 struct TrackedPose {
   ViewPose T_C_V;
   int inliers = 0;
-  double inlier_share = 0.0;               // of the located tracks
+  double inlier_share = 0.0;               // of the located tracks that are kept
   double median_depth = 1.0;               // units of V
   Matrix6d covariance = Matrix6d::Zero();  // of this pose against the map; step of moved()
+  bool keyframe = false;                   // the map was extended from this pose
 };
 
 class MapTracker {
@@ -37,6 +40,10 @@ class MapTracker {
   [[nodiscard]] std::int64_t next_landmark() const { return next_landmark_; }
   [[nodiscard]] DeviceTime pose_time() const { return pose_time_; }
   [[nodiscard]] const Lens& lens() const { return lens_; }
+  [[nodiscard]] const Map& map() const { return map_; }
+  [[nodiscard]] std::span<const Track> tracks() const { return tracks_; }
+  // Poses that have settled since the last call; all of them if the segment ends.
+  [[nodiscard]] std::vector<SettledPose> take_settled(bool segment_ends);
 
  private:
   [[nodiscard]] const Landmark* located(const Track& track) const;
@@ -44,7 +51,9 @@ class MapTracker {
   [[nodiscard]] std::vector<cv::Point2f> predict_tracks(const ViewPose& T_C_V) const;
   [[nodiscard]] MotionSolution locate_camera(const ViewPose& predicted, DeviceTime time,
                                              std::vector<Track>& followed) const;
-  [[nodiscard]] bool wants_keyframe() const;
+  // Median, without what rotation explains, in units of what makes a key frame.
+  [[nodiscard]] double flow_since_keyframe() const;
+  void rematch_tracks(const Pyramid& pyramid);
   void add_keyframe(DeviceTime time, const Pyramid& pyramid);
   void fill_up(const Pyramid& pyramid);
   void update_median_depth();
@@ -62,6 +71,8 @@ class MapTracker {
   double motion_s_ = 0.0;
   Twist twist_;  // of the newest pose
   double median_depth_ = 1.0;
+  SettledPath settled_;
+  bool rematched_ = false;           // since the newest key frame
   std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made
 };
 

@@ -11,7 +11,7 @@ namespace rfmvo {
 namespace {
 
 constexpr double kBundleHuber_px = 1.0;
-constexpr int kBundleIterations = 5;
+constexpr int kBundleIterations = 3;    // the window was adjusted at the key frame before; measured: 5 change nothing
 constexpr double kCullGate = 1.5;       // of the gate: an observation's error after the adjustment
 constexpr std::size_t kGaugeViews = 2;  // VISION design: the oldest 2..5 key frames of a full window stay fixed
 
@@ -35,7 +35,8 @@ BundleObservation observed(const Keyframe& keyframe, const KeyframeObservation& 
                            const Lens& lens) {
   BundleObservation result;
   result.measured = at_stamp(keyframe, o, p_V, lens);
-  if (lens.is_free()) result.d_lens = lens.d_at_stamp(o.normalised, o.px.y, keyframe.T_C_V * p_V, keyframe.twist);
+  result.scale = image_scale(lens.camera(), o.normalised);
+  if (lens.is_asked()) result.d_lens = lens.d_at_stamp(o.normalised, o.px.y, keyframe.T_C_V * p_V, keyframe.twist);
   return result;
 }
 
@@ -65,7 +66,7 @@ Window gather(const Map& map, const Lens& lens, std::int64_t first) {
       w.bundle.observations.back().point = point;
     }
   }
-  w.bundle.lens = {lens.is_free(), LensVector::Zero(), lens.expected_step(), lens.information()};
+  w.bundle.lens = {lens.is_asked(), LensVector::Zero(), lens.expected_step(), lens.information()};
   return w;
 }
 
@@ -103,7 +104,8 @@ void write_back(Map& map, const Window& w, const Lens& lens, const MappingOption
     std::erase_if(landmark.observations, [&](const KeyframeObservation& o) {
       const Keyframe& keyframe = *map.find(o.keyframe);
       const Eigen::Vector2d measured = at_stamp(keyframe, o, landmark.p_V, lens);
-      const Reprojection r = reproject(keyframe.T_C_V * landmark.p_V, measured, options.focal_px);
+      const Reprojection r = reproject(keyframe.T_C_V * landmark.p_V, measured,
+                                       options.focal_px * image_scale(lens.camera(), o.normalised));
       return !r.in_front || r.error_px.norm() > kCullGate * options.gate_px;
     });
     if (landmark.observations.size() < 2) landmark.located = false;
@@ -128,9 +130,10 @@ void locate_landmarks(Map& map, std::span<const Track> tracks, const ViewPose& T
     const Eigen::Vector3d rough_V = T_C_V.to_V(depth * track.normalised.homogeneous());
     for (const KeyframeObservation& o : landmark.observations) {
       const Keyframe& keyframe = *map.find(o.keyframe);
-      lines.push_back({keyframe.T_C_V, at_stamp(keyframe, o, rough_V, lens)});
+      lines.push_back({keyframe.T_C_V, at_stamp(keyframe, o, rough_V, lens), image_scale(lens.camera(), o.normalised)});
     }
-    lines.push_back({T_C_V, lens.at_stamp(track.normalised, track.px.y, T_C_V * rough_V, twist)});
+    lines.push_back({T_C_V, lens.at_stamp(track.normalised, track.px.y, T_C_V * rough_V, twist),
+                     image_scale(lens.camera(), track.normalised)});
     if (const auto p = triangulate(lines, options.min_parallax_rad, options.focal_px, options.gate_px)) {
       landmark.located = true;
       landmark.p_V = *p;
@@ -154,9 +157,11 @@ void adjust_window(Map& map, Lens& lens, const MappingOptions& options) {
   const BundleReport report = adjust_bundle(w.bundle, {options.focal_px, kBundleHuber_px, kBundleIterations});
   if (!full) keep_scale(before, w);
   if (lens.is_settling()) keep_newest(before.back(), w);
-  if (lens.is_free()) {
-    lens.learn(w.bundle.lens.step, report.lens_information);
-    undistort_again(map, lens.camera());
+  if (w.bundle.lens.free) {
+    lens.learn(w.bundle.lens.step, report.lens_information, report.lens_pull);
+    if (w.bundle.lens.step(0) != 0.0) undistort_again(map, lens.camera());
+  } else {
+    lens.skip();
   }
   write_back(map, w, lens, options);
 }

@@ -31,7 +31,7 @@ Normal linearise(std::span<const MotionObservation> observations, const std::vec
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!use[i]) continue;
     const Eigen::Vector3d p_C = R * observations[i].p_V + pose.t_C_V;
-    const Reprojection r = reproject(p_C, observations[i].measured, options.focal_px);
+    const Reprojection r = reproject(p_C, observations[i].measured, options.focal_px * observations[i].scale);
     if (!r.in_front) {
       n.cost += kBehindCost_px2;
       continue;
@@ -76,7 +76,8 @@ void judge(std::span<const MotionObservation> observations, const MotionOptions&
   s.inliers = 0;
   double sum = 0.0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Reprojection r = reproject(s.T_C_V * observations[i].p_V, observations[i].measured, options.focal_px);
+    const Reprojection r =
+        reproject(s.T_C_V * observations[i].p_V, observations[i].measured, options.focal_px * observations[i].scale);
     if (r.in_front) s.error_px[i] = r.error_px.norm();
     use[i] = s.error_px[i] <= options.gate_px;
     if (!use[i]) continue;

@@ -12,6 +12,7 @@ namespace rfmvo {
 struct MotionObservation {
   Eigen::Vector3d p_V;
   Eigen::Vector2d measured;  // normalised image plane, undistorted
+  double scale = 1.0;        // image_scale() there
 };
 
 struct MotionOptions {

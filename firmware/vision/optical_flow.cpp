@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kWindow_px = 11;  // measured best; 21 was three times worse on a shelf aisle
 constexpr int kLevels = 3;      // above the full image: 8 px of error at the top is 64 px
-constexpr int kBackLevels = 1;  // the way back starts at the answer it should give
+constexpr int kBackLevels = 0;  // the way back starts at the answer it should give
 constexpr int kIterations = 15;
 constexpr double kStepDone_px = 0.02;
 constexpr double kMinEigen = 1e-4;  // OpenCV's default: below, the window has no texture

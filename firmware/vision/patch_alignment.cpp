@@ -20,8 +20,9 @@ constexpr float kMinGain = 0.3F, kMaxGain = 3.0F;  // exposure changes within th
 using Patch = std::array<float, kSide * kSide>;
 
 bool sample(const cv::Mat& image, double x, double y, float& value) {
-  const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
-  if (ix < 0 || iy < 0 || ix + 1 >= image.cols || iy + 1 >= image.rows) return false;
+  if (!(x >= 0.0 && y >= 0.0)) return false;
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  if (ix + 1 >= image.cols || iy + 1 >= image.rows) return false;
   const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
   const std::uint8_t* row = image.ptr<std::uint8_t>(iy) + ix;
   const std::uint8_t* next = image.ptr<std::uint8_t>(iy + 1) + ix;
@@ -64,8 +65,9 @@ bool cut(const cv::Mat& image, const cv::Point2d& centre, const Eigen::Matrix2d&
 // The patch of `image` centred at `at`, not warped: all its samples share one pair of bilinear weights.
 bool look(const cv::Mat& image, const cv::Point2d& at, Patch& patch) {
   const double x = at.x - kHalf, y = at.y - kHalf;
-  const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
-  if (ix < 0 || iy < 0 || ix + kSide >= image.cols || iy + kSide >= image.rows) return false;
+  if (!(x >= 0.0 && y >= 0.0)) return false;
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  if (ix + kSide >= image.cols || iy + kSide >= image.rows) return false;
   const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
   const float w00 = (1 - fx) * (1 - fy), w01 = fx * (1 - fy), w10 = (1 - fx) * fy, w11 = fx * fy;
   for (int r = 0; r < kSide; ++r) {

@@ -21,7 +21,7 @@ constexpr double kMargin_px = 12.0;                          // room for the pat
 std::optional<Eigen::Vector2d> visible_at(const CameraModel& camera, const Eigen::Vector3d& p_C) {
   if (p_C.z() <= kMinDepth) return std::nullopt;
   const Eigen::Vector2d n = p_C.hnormalized();
-  constexpr double kWidest = 1.5;  // of the normalised plane: beyond, distortion models fold over
+  const double kWidest = camera.distortion == Distortion::kRadtan ? 1.5 : 2.5;  // radtan folds over beyond
   if (n.norm() > kWidest) return std::nullopt;
   const Eigen::Vector2d px = project(camera, n);
   const bool inside = px.x() > kMargin_px && px.y() > kMargin_px && px.x() < camera.width_px - kMargin_px &&
@@ -71,12 +71,12 @@ Eigen::Matrix2d warp(const ViewPose& T_K_V, const KeyframeObservation& o, const 
 }  // namespace
 
 std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const Pyramid& pyramid, const ViewPose& T_C_V,
-                           const CameraModel& camera, int most) {
+                           const CameraModel& camera, const RematchLimits& limits) {
   std::vector<Track> found;
   auto next = tracks.begin();
   const Eigen::Vector3d centre = T_C_V.centre();
   for (const auto& [id, landmark] : map.landmarks) {
-    if (static_cast<int>(found.size()) >= most) break;
+    if (static_cast<int>(found.size()) >= limits.most) break;
     while (next != tracks.end() && next->landmark < id) ++next;
     const bool followed = next != tracks.end() && next->landmark == id;
     if (followed || !landmark.located) continue;
@@ -88,7 +88,8 @@ std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const 
     const cv::Point2f predicted(static_cast<float>(px->x()), static_cast<float>(px->y()));
     const auto at = align_patch(from.pyramid, pyramid,
                                 {o->px, predicted, warp(from.T_C_V, *o, landmark.p_V, T_C_V, camera)}, kCoarsestLevel);
-    if (at) found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0});
+    if (at && cv::norm(*at - predicted) <= limits.max_miss_px)
+      found.push_back({id, *at, unproject(camera, {at->x, at->y}), 0, true});
   }
   return found;
 }

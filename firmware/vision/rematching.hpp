@@ -10,9 +10,14 @@
 
 namespace rfmvo {
 
-// New tracks, sorted by landmark, of located landmarks of the map that are not among `tracks`; at most `most`.
+// New tracks, sorted by landmark, of located landmarks of the map that are not among `tracks`;
+// farther than max_miss_px from where the map has it, a match is something else.
+struct RematchLimits {
+  int most = 100;
+  double max_miss_px = 5.0;
+};
 [[nodiscard]] std::vector<Track> rematch(const Map& map, std::span<const Track> tracks, const Pyramid& pyramid,
-                                         const ViewPose& T_C_V, const CameraModel& camera, int most);
+                                         const ViewPose& T_C_V, const CameraModel& camera, const RematchLimits& limits);
 
 // Puts each located track back onto what its landmark looked like when first seen, which takes out the
 // slow slip of frame-to-frame tracking.

@@ -28,7 +28,7 @@ bool refine(std::span<const SightLine> lines, double focal_px, Eigen::Vector3d& 
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (const SightLine& line : lines) {
-      const Reprojection r = reproject(line.T_C_V * p_V, line.measured, focal_px);
+      const Reprojection r = reproject(line.T_C_V * p_V, line.measured, focal_px * line.scale);
       if (!r.in_front) return false;
       const Eigen::Matrix<double, 2, 3> J = r.d_camera_point * line.T_C_V.R_C_V.toRotationMatrix();
       H.noalias() += J.transpose() * J;
@@ -52,7 +52,7 @@ std::optional<Eigen::Vector3d> triangulate(std::span<const SightLine> lines, dou
   Eigen::Vector3d p_V = midpoint(lines.front(), lines.back());
   if (!refine(lines, focal_px, p_V)) return std::nullopt;
   for (const SightLine& line : lines) {
-    const Reprojection r = reproject(line.T_C_V * p_V, line.measured, focal_px);
+    const Reprojection r = reproject(line.T_C_V * p_V, line.measured, focal_px * line.scale);
     if (!r.in_front || r.error_px.norm() > gate_px) return std::nullopt;
   }
   return p_V;

@@ -12,6 +12,7 @@ namespace rfmvo {
 struct SightLine {
   ViewPose T_C_V;
   Eigen::Vector2d measured;  // normalised image plane, undistorted
+  double scale = 1.0;        // image_scale() there
 };
 
 // Angle at the point between two sight lines' directions in V, rad.

@@ -15,6 +15,8 @@ namespace rfmvo {
 namespace {
 
 constexpr double kConfidence = 0.999;
+constexpr int kMaxTries =
+    200;  // enough for half of the pairs wrong: 1 - (1 - 1/32)^200 = 0.998; nonsense must not cost more
 constexpr double kSamePose_rad = 1.0 * kPi / 180.0;
 constexpr double kSameDirection_rad = 5.0 * kPi / 180.0;
 // Below this the depth of a pair says nothing; such points neither vote for nor against.
@@ -33,7 +35,8 @@ ViewPose pose_from(const cv::Mat& R, const cv::Mat& t, double sign) {
 void add_essential(const std::vector<cv::Point2d>& a, const std::vector<cv::Point2d>& b, double threshold,
                    std::vector<ViewPose>& poses) {
   // OpenCV seeds its RANSAC with a constant: same points, same answer.
-  const cv::Mat E = cv::findEssentialMat(a, b, cv::Mat::eye(3, 3, CV_64F), cv::RANSAC, kConfidence, threshold);
+  const cv::Mat E =
+      cv::findEssentialMat(a, b, cv::Mat::eye(3, 3, CV_64F), cv::RANSAC, kConfidence, threshold, kMaxTries);
   for (int k = 0; k + 3 <= E.rows; k += 3) {
     cv::Mat R1, R2, t;
     cv::decomposeEssentialMat(E.rowRange(k, k + 3), R1, R2, t);

@@ -15,16 +15,21 @@ namespace {
 
 constexpr int kGoodInliers = 30;  // fewer: degraded
 constexpr double kGoodInlierShare = 0.6;
-constexpr double kGoodSigma = 0.01;          // of the position, over the median depth: above, degraded
-constexpr double kHold_s = 0.25;             // without a pose, then the map is given up ("lost within 0.3 s")
-constexpr double kInflation = 2.5;           // of the motion's sigma: the map's own errors are not in it
+constexpr double kGoodSigma = 0.01;  // of the position, over the median depth: above, degraded
+constexpr double kHold_s = 0.25;     // without a pose, then the map is given up ("lost within 0.3 s")
+// Of the pose's covariance against the map. The map is extended from key frames, each with its own error, of which
+// the next inherits all; between key frames poses only scatter about the same map. Together, summed over a second,
+// they are as large as the errors (README: nees_per_dof).
+constexpr double kKeyframeInflation = 7.0;
+constexpr double kScatterShare = 0.1;
 constexpr std::size_t kMinStartTracks = 30;  // fewer after a loss: still lost, there is nothing to start with
 constexpr double kRefillShare = 0.7;         // of max_tracks, while starting
 constexpr double kCalibratedShare = 0.06;    // of k1_sigma, if the calibration states a distortion: it measured k1
 constexpr int kArchiveWindows = 4;           // key frames kept for matching back, in windows
 
 Lens initial_lens(const VisionConfig& config, const CameraModel& camera) {
-  const bool calibrated = std::any_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k != 0.0; });
+  const bool calibrated = camera.distortion != Distortion::kRadtan ||
+                          std::any_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k != 0.0; });
   const double k1_sigma = calibrated ? kCalibratedShare * config.k1_sigma : config.k1_sigma;
   return {camera, {k1_sigma, config.readout_s, config.readout_sigma_s}};
 }
@@ -53,8 +58,10 @@ struct VisualOdometry::Impl {
 
   CameraPose start(DeviceTime time, Pyramid pyramid);
   CameraPose track(DeviceTime time, const Pyramid& pyramid);
+  CameraPose stay(DeviceTime time);
   CameraPose without_pose(DeviceTime time);
   void lose();
+  void settle(bool segment_ends);
 
   Lens lens;  // while there is a tracker, it knows better
   const MapTrackerOptions options;
@@ -66,10 +73,24 @@ struct VisualOdometry::Impl {
   Pyramid previous;           // likewise
   std::int64_t next_landmark = 0;
   Matrix6d previous_covariance = Matrix6d::Zero();
+  std::vector<SettledPose> settled;  // by the last frame
+  std::optional<CameraPose> newest;  // with a pose, of this segment
+  bool last_had_pose = false;
+  std::shared_ptr<const std::vector<std::uint8_t>> last_image;
 };
+
+void VisualOdometry::Impl::settle(bool segment_ends) {
+  for (SettledPose& pose : tracker->take_settled(segment_ends)) {
+    pose.segment = segment;
+    settled.push_back(pose);
+  }
+}
 
 // The scale dies with the map: what starts after it is another segment.
 void VisualOdometry::Impl::lose() {
+  settle(true);
+  newest.reset();
+  last_had_pose = false;
   next_landmark = tracker->next_landmark();
   lens = tracker->lens();
   tracker.reset();
@@ -110,11 +131,24 @@ CameraPose VisualOdometry::Impl::start(DeviceTime time, Pyramid pyramid) {
   tracker.emplace(options, lens);
   tracker->begin(std::move(*map), std::move(tracks), std::move(pyramid), next_landmark);
   tracks.clear();
+  newest = pose;
+  last_had_pose = true;
+  return pose;
+}
+
+// The same bits again: a sensor has noise, so the camera hangs. That is no news about the motion; the pose stays, and
+// is not vouched for.
+CameraPose VisualOdometry::Impl::stay(DeviceTime time) {
+  if (!last_had_pose) return without_pose(time);  // black, for example
+  CameraPose pose = *newest;
+  pose.time = time;
+  pose.status = VoStatus::kDegraded;
   return pose;
 }
 
 CameraPose VisualOdometry::Impl::track(DeviceTime time, const Pyramid& pyramid) {
   const auto found = tracker->on(time, pyramid);
+  last_had_pose = found.has_value();
   if (!found) return without_pose(time);
   CameraPose pose;
   pose.time = time;
@@ -122,9 +156,11 @@ CameraPose VisualOdometry::Impl::track(DeviceTime time, const Pyramid& pyramid) 
   pose.status = judge(*found);
   pose.inliers = found->inliers;
   pose.T_V_C = to_unscaled(found->T_C_V);
-  // Two poses against the same map, each with its own scatter.
-  pose.motion_covariance = kInflation * kInflation * (found->covariance + previous_covariance);
+  pose.motion_covariance = kScatterShare * (found->covariance + previous_covariance);
+  if (found->keyframe) pose.motion_covariance += kKeyframeInflation * found->covariance;
   previous_covariance = found->covariance;
+  settle(false);
+  newest = pose;
   return pose;
 }
 
@@ -134,7 +170,37 @@ VisualOdometry::~VisualOdometry() = default;
 
 const Lens& VisualOdometry::lens() const { return impl_->tracker ? impl_->tracker->lens() : impl_->lens; }
 
+std::span<const SettledPose> VisualOdometry::settled() const { return impl_->settled; }
+
+std::vector<SettledPose> VisualOdometry::finish() {
+  impl_->settled.clear();
+  if (impl_->tracker) impl_->settle(true);
+  return std::move(impl_->settled);
+}
+
+OdometryView VisualOdometry::view() const {
+  OdometryView view;
+  const auto add = [&view](const Track& t, bool located) {
+    view.tracks.push_back({t.landmark, {t.px.x, t.px.y}, located, located && t.strikes == 0});
+  };
+  if (!impl_->tracker) {
+    for (const Track& t : impl_->tracks) add(t, false);
+    return view;
+  }
+  const Map& map = impl_->tracker->map();
+  for (const Track& t : impl_->tracker->tracks()) {
+    const auto it = map.landmarks.find(t.landmark);
+    add(t, it != map.landmarks.end() && it->second.located);
+  }
+  for (const auto& [id, landmark] : map.landmarks) {
+    if (landmark.located) view.points_V.push_back(landmark.p_V);
+  }
+  for (const Keyframe& keyframe : map.keyframes) view.keyframes_V.push_back(keyframe.T_C_V.centre());
+  return view;
+}
+
 CameraPose VisualOdometry::on(const Frame& frame) {
+  impl_->settled.clear();
   const CameraModel& camera = impl_->lens.camera();
   const bool usable =
       frame.grey && frame.width_px == camera.width_px && frame.height_px == camera.height_px &&
@@ -144,6 +210,9 @@ CameraPose VisualOdometry::on(const Frame& frame) {
     pose.status = VoStatus::kLost;
     return pose;
   }
+  const bool again = impl_->last_image && *impl_->last_image == *frame.grey;
+  impl_->last_image = frame.grey;
+  if (again && impl_->tracker) return impl_->stay(frame.time);
   // OpenCV has no const view of foreign bytes; build_pyramid only reads them.
   const cv::Mat grey(frame.height_px, frame.width_px, CV_8UC1, const_cast<std::uint8_t*>(frame.grey->data()));
   return impl_->tracker ? impl_->track(frame.time, build_pyramid(grey)) : impl_->start(frame.time, build_pyramid(grey));

@@ -14,11 +14,15 @@ namespace {
 struct Arguments {
   simulate::Options options;
   bool no_frames = false;
-  std::string out, truth_directory;
+  std::string out, truth_directory, frames_directory;
   std::string prefix = LcmConfig{}.prefix;
 };
 
 Status run(const Arguments& arguments) {
+  if (!arguments.frames_directory.empty()) {
+    const Status s = simulate::write_image_folder(arguments.options, arguments.frames_directory);
+    if (!s.ok() || arguments.out.empty()) return s;
+  }
   auto writer = LogWriter::create(arguments.out, arguments.prefix);
   if (!writer.ok()) return writer.error();
   const std::unique_ptr<LogWriter> log = std::move(writer).value();
@@ -36,11 +40,17 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("simulate", "Write the journal of a simulated run, and its truth");
   add_simulation_options(*command, arguments->options);
   command->add_option("--seed", arguments->options.seed, "Same seed, same bytes")->capture_default_str();
-  command->add_option("--out", arguments->out, "Journal to write (.lcmlog)")->required();
-  command->add_option("--truth", arguments->truth_directory, "Folder for the truth")->required();
+  CLI::Option* out = command->add_option("--out", arguments->out, "Journal to write (.lcmlog)");
+  CLI::Option* truth = command->add_option("--truth", arguments->truth_directory, "Folder for the truth");
+  out->needs(truth);
+  truth->needs(out);
+  command->add_option("--frames", arguments->frames_directory,
+                      "Write the pictures as a folder: images/, times.txt, calib.txt, groundtruth.txt");
   command->add_flag("--no-frames", arguments->no_frames, "Camera poses only, no images");
   command->add_option("--prefix", arguments->prefix, "Of the LCM channels")->capture_default_str();
   command->callback([arguments, &exit_code] {
+    if (arguments->out.empty() && arguments->frames_directory.empty())
+      throw CLI::RequiredError("--out and --truth, or --frames");
     arguments->options.frames = !arguments->no_frames;
     const Status status = run(*arguments);
     if (!status.ok()) std::fprintf(stderr, "rfmvo simulate: %s\n", status.error().text().c_str());

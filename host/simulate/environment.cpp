@@ -28,6 +28,13 @@ void add_box(Environment& e, const Vector3d& low, const Vector3d& high, const Bo
   add_face(e, low, x, y, size.x(), size.y(), t.top, t.stretch, 0.45F);
 }
 
+Surface moved(Surface surface, const Rigid3& T) {
+  surface.corner = T * surface.corner;
+  surface.right = T.R * surface.right;
+  surface.down = T.R * surface.down;
+  return surface;
+}
+
 void add_poster(Environment& e, const Vector3d& corner, double width_m, double height_m,
                 const TexturePointer& texture) {
   add_face(e, corner, Vector3d::UnitX(), -Vector3d::UnitZ(), width_m, height_m, texture, true, 1.0F);

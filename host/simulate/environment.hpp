@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
+#include "geometry/rigid.hpp"
 #include "simulate/texture.hpp"
 
 namespace rfmvo::simulate {
@@ -37,8 +39,15 @@ struct Scatterer {
   double cross_section_m2 = 0.01;
 };
 
+// People and vehicles: surfaces in a frame of their own, which moves.
+struct Mover {
+  std::vector<Surface> surfaces;
+  std::function<Rigid3(double)> T_S_M;  // at a time (s)
+};
+
 struct Environment {
   std::vector<Surface> surfaces;
+  std::vector<Mover> movers;
   std::vector<Reflector> reflectors;
   std::vector<Scatterer> scatterers;
 };
@@ -54,5 +63,7 @@ void add_box(Environment& environment, const Eigen::Vector3d& low, const Eigen::
 // A rectangle in the plane y = const that looks towards -y, upper left corner (x, y, z).
 void add_poster(Environment& environment, const Eigen::Vector3d& corner, double width_m, double height_m,
                 const TexturePointer& texture);
+
+[[nodiscard]] Surface moved(Surface surface, const Rigid3& T);
 
 }  // namespace rfmvo::simulate

@@ -73,7 +73,12 @@ Status read_camera(const std::string& directory, CameraModel& camera) {
     }
     if (camera.fx_px <= 0 || camera.fy_px <= 0 || camera.width_px <= 0 || camera.height_px <= 0)
       return "must be positive";
-    if (model != "none" && model != "radtan") return "unknown distortion model '" + model + "' (none | radtan)";
+    if (model != "none" && model != "radtan" && model != "equidistant")
+      return "unknown distortion model '" + model + "' (none | radtan | equidistant)";
+    if (model == "equidistant") camera.distortion = Distortion::kEquidistant;
+    for (std::size_t i = 0; model == "equidistant" && i < camera.equidistant.size() && words >> camera.equidistant[i];
+         ++i) {
+    }
     for (std::size_t i = 0; model == "radtan" && i < camera.radtan.size() && words >> camera.radtan[i]; ++i) {
     }
     found = true;

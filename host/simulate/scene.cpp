@@ -7,8 +7,9 @@ namespace rfmvo::simulate {
 constexpr double kFrameRate_hz = 30.0;  // the paper's camera, Section VII-A
 
 std::vector<std::string> scene_names() {
-  return {"aisle",      "wall",          "S3",           "S6",         "straight", "straight1ant",
-          "oneantenna", "stackedmirror", "purerotation", "standstill", "onetag",   "tags300"};
+  return {"aisle",         "wall",         "S3",         "S6",        "straight", "straight1ant", "oneantenna",
+          "stackedmirror", "purerotation", "standstill", "onetag",    "tags300",  "shelf05",      "shelf1",
+          "shelf1rs",      "shelfturn",    "shelfstop",  "shelfdiag", "crowd",    "dark",         "corridor"};
 }
 
 bool is_degenerate_scene(const std::string& name) {
@@ -21,6 +22,7 @@ Result<Scene> make_family(const Options& options) {
   if (!options.images_dir.empty()) return make_image_scene(options);
   if (options.scene == "aisle") return make_aisle_scene(options);
   if (options.scene == "wall") return make_wall_scene(options);
+  if (is_drive_scene(options.scene)) return make_drive_scene(options);
   if (is_stacked_scene(options.scene)) return make_stacked_scene(options);
   std::string known;
   for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;

@@ -11,11 +11,10 @@
 
 #include "base/result.hpp"
 #include "config/calibration.hpp"
+#include "simulate/renderer.hpp"
 #include "simulate/simulation.hpp"
 
 namespace rfmvo::simulate {
-
-struct Environment;  // environment.hpp: reflectors and textured surfaces
 
 struct SceneTag {
   Epc epc;
@@ -33,6 +32,7 @@ struct Scene {
   double structured_sigma_rad = 0.3;  // of the statistical radio link
   double capture_sigma = 1.0;         // spread of ln(chance to win a slot) between tags: makes gaps heavy-tailed
   std::shared_ptr<const Environment> environment;   // null: statistical link, no rendered frames
+  CameraEffects camera_effects;                     // of rendered frames
   bool physical_link = false;                       // phase and power from the environment's reflections
   std::function<Result<Frame>(std::size_t)> frame;  // k-th frame without its time; empty: the scene has no frames
 
@@ -48,6 +48,8 @@ struct Scene {
 [[nodiscard]] Scene make_stacked_scene(const Options& options);
 [[nodiscard]] Scene make_wall_scene(const Options& options);
 [[nodiscard]] Scene make_aisle_scene(const Options& options);
+[[nodiscard]] bool is_drive_scene(const std::string& name);
+[[nodiscard]] Scene make_drive_scene(const Options& options);
 [[nodiscard]] Result<Scene> make_image_scene(const Options& options);
 
 // Lets the scene's frames be rendered from its environment. Call it when everything else is set.

@@ -68,7 +68,7 @@ Calibration calibration_of(const Shape& shape) {
 
 bool is_stacked_scene(const std::string& name) {
   for (const std::string& known : scene_names()) {
-    if (name == known) return name != "aisle" && name != "wall";
+    if (name == known) return name != "aisle" && name != "wall" && !is_drive_scene(name);
   }
   return false;
 }

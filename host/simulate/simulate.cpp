@@ -135,7 +135,8 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
   start.time = at(scene.start_s());
   start.config.estimator.pose_source = with_frames ? "frames" : "poses";
   if (options.images_dir.empty()) {
-    // The rendering camera is a pinhole with a global shutter, and its calibration says so.
+    // The rendering camera is a pinhole, and its calibration says so; its data sheet tells the readout time.
+    start.config.vision.readout_s = scene.camera_effects.readout_s;
     start.config.vision.k1_sigma = kRenderedK1Sigma;
     start.config.vision.readout_sigma_s = kRenderedReadoutSigma_s;
   }

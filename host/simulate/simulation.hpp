@@ -27,6 +27,7 @@ struct Options {
   double frame_gap_s = 0.0;              // no frame and no camera pose for this long, in the middle of the run
   std::optional<double> structured_rad;  // strength of the structured phase error; nothing: the scene's own
   std::size_t tags = 0;                  // 0: the scene's own number
+  std::optional<double> duration_s;      // of a drive (shelf05 .. corridor); nothing: the scene's own
 };
 
 struct TrueTag {
@@ -57,6 +58,10 @@ using Sink = std::function<Status(const Event&)>;
 
 // Feeds `sink` with the run's events in time order (Start first). Same options, same events, bit for bit.
 [[nodiscard]] Result<Truth> simulate(const Options& options, const Sink& sink);
+
+// The pictures of a scene as an image folder: images/000000.jpg .., times.txt, calib.txt, groundtruth.txt (TUM,
+// T_W_C of the camera, at every picture). Errors: kUnsupported for a scene without pictures, kUnwritable.
+[[nodiscard]] Status write_image_folder(const Options& options, const std::string& directory);
 
 // tags.csv (epc,x_m,y_m,z_m), trajectory.tum (t tx ty tz qx qy qz qw of T_W_C), antennas.toml (the
 // true calibration), scale.csv (m_per_unit). Each file is written under a temporary name and renamed.

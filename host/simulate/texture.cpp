@@ -104,23 +104,6 @@ Texture::Texture(int bits, const std::vector<float>& grey) : bits_(bits) {
   }
 }
 
-float Texture::sample(float x, float y, int level) const {
-  level = std::clamp(level, 0, bits_);
-  const int side_bits = bits_ - level, mask = (1 << side_bits) - 1;
-  const std::uint8_t* texels = levels_[static_cast<std::size_t>(level)].data();
-  const float scale = 1.0F / static_cast<float>(1 << level);
-  // Texel centres lie at half-integers of every level.
-  const float u = x * scale - 0.5F, v = y * scale - 0.5F;
-  const float uf = std::floor(u), vf = std::floor(v);
-  const float f = u - uf, g = v - vf;
-  const int x0 = static_cast<int>(uf) & mask, x1 = (x0 + 1) & mask;
-  const std::uint8_t* row0 = texels + (static_cast<std::size_t>(static_cast<int>(vf) & mask) << side_bits);
-  const std::uint8_t* row1 = texels + (static_cast<std::size_t>((static_cast<int>(vf) + 1) & mask) << side_bits);
-  const float top = row0[x0] + f * static_cast<float>(row0[x1] - row0[x0]);
-  const float bottom = row1[x0] + f * static_cast<float>(row1[x1] - row1[x0]);
-  return top + g * (bottom - top);
-}
-
 TexturePointer cardboard_texture(Random& random) {
   Sheet sheet(8, static_cast<float>(random.uniform(105, 190)));
   sheet.noise(4, 10.0F, random);

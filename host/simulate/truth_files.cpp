@@ -126,7 +126,40 @@ bool take_pose(const std::string& line, Truth& truth) {
   return true;
 }
 
+std::string camera_text(const CameraModel& c) {
+  std::string text = "# fx fy cx cy width height model d0..\n";
+  for (const double value : {c.fx_px, c.fy_px, c.cx_px, c.cy_px}) text += number(value) + " ";
+  text += std::to_string(c.width_px) + " " + std::to_string(c.height_px) + " radtan";
+  for (const double k : c.radtan) text += " " + number(k);
+  return text + "\n";
+}
+
 }  // namespace
+
+Status write_image_folder(const Options& options, const std::string& directory) {
+  std::error_code failure;
+  std::filesystem::create_directories(directory + "/images", failure);
+  if (failure) return Error{ErrorCode::kUnwritable, failure.message(), directory};
+  std::string times = "# t[s] file\n";
+  CameraModel camera;
+  const auto write_frame = [&](const Event& event) -> Status {
+    if (const auto* start = std::get_if<Start>(&event)) camera = start->calibration.camera;
+    const auto* frame = std::get_if<Frame>(&event);
+    if (!frame) return Done{};
+    char name[40];
+    std::snprintf(name, sizeof name, "images/%06lld.%s", static_cast<long long>(frame->sequence),
+                  frame->encoding == "png" ? "png" : "jpg");
+    times += seconds_of(frame->time) + " " + name + "\n";
+    return write_file(directory + "/" + name, {frame->encoded->begin(), frame->encoded->end()});
+  };
+  const Result<Truth> truth = simulate(options, write_frame);
+  if (!truth.ok()) return truth.error();
+  if (times.find("images/") == std::string::npos)
+    return Error{ErrorCode::kUnsupported, "scene '" + options.scene + "' has no pictures", "--frames"};
+  if (Status s = write_file(directory + "/calib.txt", camera_text(camera)); !s.ok()) return s;
+  if (Status s = write_file(directory + "/groundtruth.txt", trajectory_text(truth.value())); !s.ok()) return s;
+  return write_file(directory + "/times.txt", times);
+}
 
 Status write_truth(const Truth& truth, const std::string& directory) {
   std::error_code failure;

@@ -2,6 +2,7 @@
 // its command on exported files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "commands/export_text.hpp"
 #include "commands/whole_file.hpp"
 #include "evaluate/evaluation.hpp"
+#include "odometry/odometry_report.hpp"
 #include "support/evaluate_world.hpp"
 
 namespace rfmvo {
@@ -33,8 +35,8 @@ constexpr const char* kReadZip = R"(import io, json, sys, zipfile
 import numpy as np
 z = zipfile.ZipFile(sys.argv[1])
 stats = json.loads(z.read('stats.json'))
-name = [n for n in z.namelist() if 'alignment_transformation' in n][0]
-T = np.load(io.BytesIO(z.read(name)))
+names = [n for n in z.namelist() if 'alignment_transformation' in n]
+T = np.load(io.BytesIO(z.read(names[0]))) if names else np.eye(4)
 print(json.dumps({'rmse': stats['rmse'], 'scale': float(np.cbrt(np.linalg.det(T[:3, :3])))}))
 )";
 
@@ -56,10 +58,13 @@ class EvoTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   // HOME: evo keeps its settings there. stdin closed: it asks nothing.
-  [[nodiscard]] EvoNumbers ape(const std::string& flags) const {
-    const std::string zip = folder_ / ("result" + flags + ".zip");
+  [[nodiscard]] EvoNumbers ape(const std::string& flags) const { return run_evo("evo_ape", flags); }
+  [[nodiscard]] EvoNumbers run_evo(const std::string& tool, const std::string& flags) const {
+    std::string name = "result_" + tool + flags + ".zip";
+    std::replace(name.begin(), name.end(), ' ', '_');
+    const std::string zip = folder_ / name;
     const std::string env = "cd '" + folder_.string() + "' && HOME='" + folder_.string() + "' MPLBACKEND=agg ";
-    const std::string log = output_of(env + "'" + (venv_ / "bin/evo_ape").string() + "' tum truth.tum estimate.tum " +
+    const std::string log = output_of(env + "'" + (venv_ / "bin" / tool).string() + "' tum truth.tum estimate.tum " +
                                       flags + " --no_warnings --save_results '" + zip + "' 2>&1 </dev/null");
     EXPECT_TRUE(fs::exists(zip)) << log;
     const std::string text = output_of(env + "'" + (venv_ / "bin/python").string() + "' read_zip.py '" + zip + "'");
@@ -87,6 +92,32 @@ TEST_F(EvoTest, AgreesOnAteAndScaleOfANoisyPathWithWrongScale) {
   EXPECT_NEAR(*ours.ate_se3_m, se3.rmse_m, kRelative * se3.rmse_m);
   EXPECT_NEAR(*ours.ate_sim3_m, sim3.rmse_m, kRelative * sim3.rmse_m);
   EXPECT_NEAR(ours.segments.at(0).sim3_scale, sim3.scale, kRelative);
+}
+
+// The figures of `rfmvo vo` on the files it writes.
+TEST_F(EvoTest, AgreesWithTheFiguresOfTheOdometry) {
+  const auto truth = testing::winding_truth(600, 0);
+  std::vector<odometry::PathPose> path, true_path;
+  for (const Estimate& estimate : testing::noisy_result(truth)) {
+    const auto* trajectory = std::get_if<Trajectory>(&estimate);
+    if (!trajectory) continue;
+    for (const MetricPose& p : trajectory->poses) path.push_back({p.time, 0, {p.T_W_C.R, 0.7 * p.T_W_C.t}, {}});
+  }
+  for (const auto& p : truth.trajectory) true_path.push_back({p.time, 0, {p.T_W_C.R, p.T_W_C.t}, {}});
+  ASSERT_TRUE(write_whole_file(folder_ / "estimate.tum", odometry::to_tum(path)).ok());
+  ASSERT_TRUE(write_whole_file(folder_ / "truth.tum", odometry::to_tum(true_path)).ok());
+
+  const auto ours = odometry::path_figures(path, truth.trajectory).value();
+  const EvoNumbers se3 = run_evo("evo_ape", "-a"), sim3 = run_evo("evo_ape", "-as");
+  EXPECT_NEAR(ours.ate_se3_m, se3.rmse_m, kRelative * se3.rmse_m);
+  EXPECT_NEAR(ours.ate_sim3_m, sim3.rmse_m, kRelative * sim3.rmse_m);
+  EXPECT_NEAR(ours.scale_m_per_unit, sim3.scale, kRelative);
+  const EvoNumbers frame = run_evo("evo_rpe", "-as --delta 1");
+  EXPECT_NEAR(ours.rpe_frame_m, frame.rmse_m, kRelative * frame.rmse_m);
+  const EvoNumbers second = run_evo("evo_rpe", "-as --all_pairs --delta 25");  // frames of 40 ms
+  EXPECT_NEAR(ours.rpe_second_m, second.rmse_m, kRelative * second.rmse_m);
+  const EvoNumbers turn = run_evo("evo_rpe", "-as --all_pairs --delta 25 -r angle_deg");
+  EXPECT_NEAR(ours.rpe_second_deg, turn.rmse_m, 1e-4 * turn.rmse_m + 1e-5);  // evo's angle is an arc cosine
 }
 
 }  // namespace

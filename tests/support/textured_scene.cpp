@@ -53,12 +53,14 @@ cv::Mat render_pinhole(const std::vector<TexturedPlane>& planes, const CameraMod
 }  // namespace
 
 cv::Mat render(const std::vector<TexturedPlane>& planes, const CameraModel& camera, const Rigid3& T_W_C) {
-  if (std::all_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k == 0.0; })) {
+  const bool fisheye = camera.distortion == Distortion::kEquidistant;
+  if (!fisheye && std::all_of(camera.radtan.begin(), camera.radtan.end(), [](double k) { return k == 0.0; })) {
     return render_pinhole(planes, camera, T_W_C);
   }
-  constexpr int kMargin_px = 40;  // what a barrel lens sees beyond the pinhole's image
+  const int kMargin_px = fisheye ? 400 : 40;  // what a barrel lens sees beyond the pinhole's image
   CameraModel wide = camera;
   wide.radtan = {};
+  wide.distortion = Distortion::kRadtan;
   wide.width_px += 2 * kMargin_px, wide.height_px += 2 * kMargin_px;
   wide.cx_px += kMargin_px, wide.cy_px += kMargin_px;
   cv::Mat from(camera.height_px, camera.width_px, CV_32FC2), image;

@@ -63,7 +63,7 @@ TEST(ImageFolder, ErrorsNameTheFile) {
   write_file(folder / "calib.txt", "10 10 4 3 9 6 none\n");
   EXPECT_EQ(read_all(folder / ""), folder / "images/a.png: the png image has 8 x 6 px, declared are 9 x 6");
   write_file(folder / "calib.txt", "10 10 4 3 8 6 fisheye 0 0 0 0\n");
-  EXPECT_EQ(read_all(folder / ""), folder / "calib.txt:1: unknown camera model \"fisheye\"; known: radtan, none");
+  EXPECT_EQ(read_all(folder / ""), folder / "calib.txt:1: unknown camera model \"fisheye\"; known: radtan, equidistant, none");
   write_file(folder / "images/a.png", "this is no image");
   write_file(folder / "calib.txt", "10 10 4 3 8 6 none\n");
   EXPECT_EQ(read_all(folder / ""), folder / "images/a.png: the png image cannot be decoded");

@@ -142,6 +142,58 @@ TEST(CameraModel, UnprojectKeepsTheHeadersBoundToTheCornersForStrongDistortion) 
   EXPECT_LT(round_trip_error({.radtan = {0.39, 0, 0, 0, 0}}), 1e-9);
 }
 
+const CameraModel kFisheye{.fx_px = 280,
+                           .fy_px = 282,
+                           .cx_px = 320,
+                           .cy_px = 240,
+                           .distortion = Distortion::kEquidistant,
+                           .equidistant = {-0.03, 0.01, -0.008, 0.002}};
+
+TEST(CameraModel, AFisheyeLensUnprojectsWhatItProjects) {
+  for (double angle = 0.0; angle < 1.35; angle += 0.05) {
+    for (double around = 0.0; around < 6.2; around += 0.7) {
+      const Eigen::Vector2d p = std::tan(angle) * Eigen::Vector2d(std::cos(around), std::sin(around));
+      // At the angle a, an error of the angle is 1 / cos^2(a) as large on the normalised plane: 20 at 1.35 rad.
+      EXPECT_LT((unproject(kFisheye, project(kFisheye, p)) - p).norm(), 1e-9) << angle;
+    }
+  }
+}
+
+// OpenCV 4.6 manual, module fisheye: theta_d = theta (1 + k1 theta^2 + ..), by hand at 45 degrees along x.
+TEST(CameraModel, AFisheyeLensDistortsAsWrittenInTheManual) {
+  const double a = 0.78539816339744831, a2 = a * a;
+  const double radius = a * (1.0 - 0.03 * a2 + 0.01 * a2 * a2 - 0.008 * a2 * a2 * a2 + 0.002 * a2 * a2 * a2 * a2);
+  EXPECT_NEAR((project(kFisheye, {1.0, 0.0}) - Eigen::Vector2d(320 + 280 * radius, 240)).norm(), 0.0, 1e-10);
+}
+
+TEST(CameraModel, DerivativesOfTheDistortionEqualCentralDifferences) {
+  CameraModel radtan{.radtan = {-0.2, 0.05, 1e-3, -5e-4, 0.01}};
+  constexpr double kStep = 1e-6;  // error about kStep^2 times the third derivative, below 1e-10
+  for (CameraModel camera : {radtan, kFisheye}) {
+    const auto distorted = [&camera](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+      const Eigen::Vector2d px = project(camera, p);
+      return {(px.x() - camera.cx_px) / camera.fx_px, (px.y() - camera.cy_px) / camera.fy_px};
+    };
+    const Eigen::Vector2d p(0.5, -0.3), dx(kStep, 0), dy(0, kStep);
+    Eigen::Matrix2d J;
+    J.col(0) = (distorted(p + dx) - distorted(p - dx)) / (2 * kStep);
+    J.col(1) = (distorted(p + dy) - distorted(p - dy)) / (2 * kStep);
+    EXPECT_LT((distort_jacobian(camera, p) - J).norm(), 1e-8);
+    const Eigen::Vector2d by_k1 = distort_d_k1(camera, p);
+    const double k1 = k1_of(camera);
+    set_k1(camera, k1 + kStep);
+    const Eigen::Vector2d above = distorted(p);
+    set_k1(camera, k1 - kStep);
+    EXPECT_LT((by_k1 - (above - distorted(p)) / (2 * kStep)).norm(), 1e-8);
+  }
+}
+
+TEST(CameraModel, AFisheyeImageShrinksTowardsTheEdge) {
+  EXPECT_NEAR(image_scale(kFisheye, {0.0, 0.0}), 1.0, 1e-12);
+  EXPECT_LT(image_scale(kFisheye, {1.5, 0.0}), 0.5);
+  EXPECT_EQ(image_scale(CameraModel{.radtan = {-0.2, 0, 0, 0, 0}}, {0.5, 0.5}), 1.0);
+}
+
 TEST(CameraModel, WithoutDistortionIsAPinhole) {
   const CameraModel camera{.fx_px = 600, .fy_px = 610, .cx_px = 300, .cy_px = 200};
   EXPECT_EQ(project(camera, {0.0, 0.0}), Eigen::Vector2d(300, 200));

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "simulate/renderer.hpp"
 #include "simulate/scene.hpp"
 
@@ -77,6 +80,89 @@ TEST(Renderer, SurfacesBehindTheCameraDoNotShow) {
   Environment e;
   e.surfaces.push_back(facing(-2, 2, -3.0, 4, 4, plain(200)));
   for (const std::uint8_t grey : render(e, camera, kLooking)) ASSERT_NE(grey, 200);
+}
+
+// A rolling shutter shows every row as the whole picture would be at that row's time.
+TEST(Renderer, ARollingShutterReadsEachRowAtItsTime) {
+  const CameraModel camera;
+  Environment e;
+  e.surfaces.push_back(facing(-3, 2, 1.5, 6, 4, checkerboard_texture(16)));
+  e.surfaces.back().texels_per_m = {256, 256};  // squares of 42 px
+  const auto path = [](double t_s) {
+    return Rigid3{(kLooking.R * so3_exp({0.1 * t_s, 0.3 * t_s, 0.0})).normalized(), {1.0 * t_s, 0.05 * t_s, 0.0}};
+  };
+  CameraEffects rolling;
+  rolling.readout_s = 0.03;
+  const auto picture = render_moving(e, camera, path, 0.2, rolling);
+  for (const int y : {10, 120, 240, 400, 470}) {
+    const auto at_row = render(e, camera, path(0.2 + ((y + 0.5) / camera.height_px - 0.5) * rolling.readout_s));
+    int different = 0;
+    for (int x = 0; x < camera.width_px; ++x) {
+      different += std::abs(pixel(picture, camera, x, y) - pixel(at_row, camera, x, y)) > 8;
+    }
+    EXPECT_LT(different, 12) << y;  // edges of the squares fall on either side by a hundredth of a pixel
+  }
+}
+
+TEST(Renderer, MotionBlursAnEdgeByTheWayOfTheExposure) {
+  const CameraModel camera;
+  Environment e;
+  e.surfaces.push_back(facing(0.0, 2, 1.5, 6, 4, plain(200)));
+  CameraEffects slow;
+  slow.exposure_s = 0.01;
+  const auto path = [](double t_s) { return Rigid3{kLooking.R, {1.0 * t_s, 0.0, 0.0}}; };
+  const auto picture = render_moving(e, camera, path, 0.0, slow);
+  int between = 0;  // neither the wall nor what is beside it
+  for (int x = 0; x < camera.width_px; ++x)
+    between += pixel(picture, camera, x, 240) > 60 && pixel(picture, camera, x, 240) < 190;
+  const double way_px = camera.fx_px * 1.0 * slow.exposure_s / 1.5;
+  EXPECT_NEAR(between, way_px, 1.5);
+}
+
+TEST(Renderer, TheCrowdCoversUpToTwoFifths) {
+  Options options;
+  options.scene = "crowd";
+  options.frames = false;
+  const Scene scene = make_scene(options).value();
+  double most = 0.0, sum = 0.0;
+  for (const double t_s : scene.frame_times_s) {
+    if (std::fmod(t_s, 0.2) > 0.02) continue;
+    const double share = occluded_share(*scene.environment, scene.calibration.camera, scene.T_S_C(t_s), t_s);
+    most = std::max(most, share);
+    sum += share / (5.0 * scene.end_s());
+  }
+  EXPECT_GT(most, 0.3);
+  EXPECT_LT(most, 0.42);
+  EXPECT_GT(sum, 0.05);
+}
+
+TEST(Renderer, EveryDriveShowsSomethingAllTheWay) {
+  for (const char* name :
+       {"shelf05", "shelf1", "shelf1rs", "shelfturn", "shelfstop", "shelfdiag", "crowd", "dark", "corridor"}) {
+    Options options;
+    options.scene = name;
+    const Scene scene = make_scene(options).value();
+    EXPECT_GE(scene.tags.size(), 5U) << name;
+    const std::size_t last = scene.frame_times_s.size() - 1;
+    for (const std::size_t k : {std::size_t{0}, last / 2, last})
+      EXPECT_GT(scene.frame(k).value().encoded->size(), 15'000U) << name;
+  }
+}
+
+// A drive is continuous: no pose jumps, whatever turns, stops and turning points it has.
+TEST(Renderer, DrivesAreSmoothForMinutes) {
+  for (const char* name : {"shelf1", "shelfturn", "shelfstop", "corridor"}) {
+    Options options;
+    options.scene = name;
+    options.duration_s = 60.0;
+    const Scene scene = make_scene(options).value();
+    constexpr double kStep_s = 0.01;
+    for (double t_s = 0.0; t_s < 60.0; t_s += kStep_s) {
+      const Rigid3 a = scene.T_S_C(t_s), b = scene.T_S_C(t_s + kStep_s);
+      ASSERT_LT((a.t - b.t).norm(), 0.02) << name << " " << t_s;
+      ASSERT_LT(a.R.angularDistance(b.R), 0.02) << name << " " << t_s;
+    }
+  }
 }
 
 TEST(Renderer, FramesOfTheAisleAreDetailedAndSmall) {
