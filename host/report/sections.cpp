@@ -185,6 +185,11 @@ std::string health_table(const ReportData& data) {
   row("Frames, camera poses", fmt::format("{}, {}", h.frames, h.poses));
   row("Tag reads",
       fmt::format("{}; {} without a camera pose, {} rejected", h.reads, h.reads_without_pose, h.reads_rejected));
+  if (h.reader.connections > 0)
+    row("Reader", fmt::format("{} connections; clock {:.6f} s behind this box's, 1 sigma {:.2g} ms, drift {:.1f} ppm, "
+                              "{} steps; {} reports lost",
+                              h.reader.connections, h.reader.clock_offset_s, h.reader.clock_sigma_s * 1e3,
+                              h.reader.clock_drift * 1e6, h.reader.clock_steps, h.reader.reports_lost));
   row("Tags", fmt::format("{} seen, {} located", h.tags, h.tags_located));
   row("Faults", h.faults == 0 ? "none" : fmt::format("{}; the last: {}", h.faults, h.last_fault));
   return text + "</tbody></table></section>\n";
