@@ -32,6 +32,11 @@ DeviceTime ReaderClockFilter::to_device(ReaderTime stamp) const {
   return {stamp.ns + reference_.delay_ns + std::llround(line_ns(stamp))};
 }
 
+double ReaderClockFilter::offset_s() const {
+  RFMVO_ASSERT(known());
+  return static_cast<double>(reference_.delay_ns) * 1e-9 + line_ns(buckets_.back().stamp) * 1e-9;
+}
+
 void ReaderClockFilter::forget() {
   buckets_.clear();
   late_.reset();

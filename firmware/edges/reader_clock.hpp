@@ -30,6 +30,8 @@ class ReaderClockFilter {
   // Only if known().
   [[nodiscard]] DeviceTime to_device(ReaderTime stamp) const;
   [[nodiscard]] double drift() const { return slope_; }  // of device less reader clock, s/s
+  // Device less reader clock at the newest second, only if known(); resolves 0.1 us, however many years it is.
+  [[nodiscard]] double offset_s() const;
   // 1 sigma of to_device(), from how far the least delays of single seconds lie from the edge.
   [[nodiscard]] Duration sigma() const { return sigma_; }
 

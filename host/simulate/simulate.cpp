@@ -4,7 +4,6 @@
 #include "simulate/drift.hpp"
 #include "simulate/radio_run.hpp"
 #include "simulate/random.hpp"
-#include "simulate/reader.hpp"
 #include "simulate/scene.hpp"
 
 namespace rfmvo::simulate {
@@ -39,14 +38,6 @@ Truth truth_of(const Scene& scene) {
   return truth;
 }
 
-std::vector<TagRead> reads_of(const Scene& scene, const Options& options) {
-  const RadioRun radio = make_radio_run(scene, options.seed);
-  const ReaderHardware hardware = draw_hardware(scene.tags.size(), scene.calibration.antennas.size(), options.seed);
-  return report(scene, radio.singulations, radio.link, hardware, options.seed,
-                kEpoch + Duration::from_seconds(options.reader_delay_s),
-                {.flip_share = options.flip_share, .outlier_share = options.outlier_share});
-}
-
 // Open interval in the middle of the run without a frame; empty for a length of 0.
 struct FrameGap {
   double from_s, to_s;
@@ -78,7 +69,8 @@ DriftedPoses drift_around(const FrameGap& gap, const Truth& truth, const DriftCl
 std::vector<Event> small_events(const Scene& scene, const Options& options, const std::vector<CameraPose>& poses) {
   std::vector<Event> events;
   for (const CameraPose& pose : poses) events.emplace_back(pose);
-  for (const TagRead& read : reads_of(scene, options)) events.emplace_back(read);
+  const DeviceTime late_epoch = kEpoch + Duration::from_seconds(options.reader_delay_s);
+  for (const TagRead& read : make_reads(scene, options, late_epoch)) events.emplace_back(read);
   for (double t_s = scene.start_s() + kTick_s; t_s <= scene.end_s(); t_s += kTick_s) events.emplace_back(Tick{at(t_s)});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return time_of(a) < time_of(b); });

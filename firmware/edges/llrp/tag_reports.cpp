@@ -9,7 +9,6 @@
 namespace rfmvo::llrp {
 namespace {
 
-constexpr std::uint64_t kMaxStamp_us = 9'000'000'000'000'000;  // year 2255; fits nanoseconds
 constexpr int kCentiPerUnit = 100;
 
 template <class T>

@@ -13,6 +13,8 @@ namespace rfmvo::llrp {
 // Whether the phase that the reader reports grows with the distance to the tag; not the same for all makes.
 enum class PhaseSign : std::int8_t { kGrows = 1, kFalls = -1 };
 
+inline constexpr std::uint64_t kMaxStamp_us = 9'000'000'000'000'000;  // year 2255; fits nanoseconds
+
 // Which of a reader's two clocks a stamp is from.
 enum class StampKind : std::int8_t { kUtc, kUptime };
 
