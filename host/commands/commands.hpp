@@ -14,5 +14,6 @@ void add_report_command(CLI::App& app, int& exit_code);
 void add_montecarlo_command(CLI::App& app, int& exit_code);
 void add_bound_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
+void add_reader_sim_command(CLI::App& app, int& exit_code);
 
 }  // namespace rfmvo

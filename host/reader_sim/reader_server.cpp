@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 
 namespace rfmvo::reader_sim {
 namespace {
 
 constexpr std::size_t kReadBytes = 16384;
-constexpr std::int64_t kNsPerMs = 1'000'000;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
 
@@ -73,8 +74,9 @@ void ReaderServer::poll(Duration wait) {
     if (!peer.frames.empty() && settings_.delivery.chunk_gap.ns > 0)
       wait_ns = std::min(wait_ns, std::max<std::int64_t>(0, (peer.next_chunk - now).ns));
   std::array<epoll_event, 16> events{};
-  const auto wait_ms = static_cast<int>((wait_ns + kNsPerMs - 1) / kNsPerMs);
-  const int count = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), wait_ms);
+  // To the nanosecond: a report leaves when its tag was read.
+  const timespec wait_time{wait_ns / kNsPerSecond, wait_ns % kNsPerSecond};
+  const int count = ::epoll_pwait2(epoll_.get(), events.data(), static_cast<int>(events.size()), &wait_time, nullptr);
   for (int i = 0; i < count; ++i) {
     const int fd = events[static_cast<std::size_t>(i)].data.fd;
     if (fd == listener_.get())

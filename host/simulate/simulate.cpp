@@ -99,9 +99,36 @@ Status feed(const Scene& scene, bool with_frames, const FrameGap& gap, const std
   return Done{};
 }
 
+// The same events at other times.
+Sink shifted(const Sink& sink, Duration shift) {
+  return [sink, shift](const Event& event) {
+    Event later = event;
+    std::visit([shift](auto& e) { e.time = e.time + shift; }, later);
+    if (auto* read = std::get_if<TagRead>(&later)) read->reader_time = read->reader_time + shift;
+    return sink(later);
+  };
+}
+
+Result<Truth> simulate_from_epoch(const Options& options, const Scene& scene, const Sink& sink);
+
 }  // namespace
 
 Result<Truth> simulate(const Options& options, const Sink& sink) {
+  Result<Scene> made = make_scene(options);
+  if (!made.ok()) return made.error();
+  const Scene scene = std::move(made).value();
+  if (!options.start) return simulate_from_epoch(options, scene, sink);
+  const Duration shift = *options.start - at(scene.start_s());
+  Result<Truth> truth = simulate_from_epoch(options, scene, shifted(sink, shift));
+  if (!truth.ok()) return truth;
+  Truth later = std::move(truth).value();
+  for (TruePose& pose : later.trajectory) pose.time = pose.time + shift;
+  return later;
+}
+
+namespace {
+
+Result<Truth> simulate_from_epoch(const Options& options, const Scene& scene, const Sink& sink) {
   const std::optional<DriftClass> drift_class = find_drift_class(options.vo_class);
   if (!drift_class) {
     std::string known;
@@ -109,9 +136,6 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
     return Error{ErrorCode::kUnknownKey, "unknown odometry class '" + options.vo_class + "'; known: " + known,
                  "--vo-class"};
   }
-  Result<Scene> made = make_scene(options);
-  if (!made.ok()) return made.error();
-  const Scene scene = std::move(made).value();
   const bool with_frames = options.frames && scene.frame;
   if (options.frame_gap_s > kMaxGapShare * (scene.end_s() - scene.start_s()))
     return Error{ErrorCode::kOutOfRange, "is more than half of the run", "--frame-gap-s"};
@@ -135,5 +159,7 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
     return s.error();
   return truth;
 }
+
+}  // namespace
 
 }  // namespace rfmvo::simulate
