@@ -13,7 +13,7 @@ frames = [(who, bytes.fromhex(text)) for who, text in json.load(open(sys.argv[1]
 counts = {"client": 0, "reader": 0, "reports": 0}
 for who, frame in frames:
     counts[who] += 1
-    again = decode_message(frame).encode()
+    again = decode_message(frame).to_bytes()
     if again != frame:
         print("llrpkit differs:", frame.hex(), again.hex())
     if int.from_bytes(frame[:2], "big") & 0x3FF == RO_ACCESS_REPORT:
