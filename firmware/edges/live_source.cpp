@@ -23,7 +23,10 @@ LiveSource::LiveSource(const MakeCamera& make_camera, std::unique_ptr<Reader> re
 LiveSource::~LiveSource() { stop(); }
 
 void LiveSource::stop() {
-  stop_ = true;
+  {
+    const std::lock_guard lock(mutex_);  // else the camera's thread could miss it between looking and waiting
+    stop_ = true;
+  }
   changed_.notify_all();
   if (reader_ != nullptr) reader_->wake();
   if (camera_thread_.joinable()) camera_thread_.join();

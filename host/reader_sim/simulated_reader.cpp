@@ -96,55 +96,57 @@ void SimulatedReader::on_frame(DeviceTime now, std::span<const std::uint8_t> fra
 }
 
 void SimulatedReader::answer(DeviceTime now, std::uint32_t id, const Body& request) {
+  if (answer_about_spec(now, id, request)) return;
   if (std::holds_alternative<GetReaderCapabilities>(request)) return send(id, capabilities_of(model_));
   if (std::holds_alternative<GetReaderConfig>(request)) return send(id, configuration());
   if (const auto* set = std::get_if<SetReaderConfig>(&request)) {
     configure(now, *set);
     return send(id, SetReaderConfigResponse{});
   }
-  if (const auto* m = std::get_if<AddRoSpec>(&request)) return send(id, AddRoSpecResponse{{add(m->ro_spec)}});
-  if (const auto* m = std::get_if<EnableRoSpec>(&request)) {
-    const LLRPStatus status = enable(now, m->ro_spec_id);
-    return send(id, EnableRoSpecResponse{{status}});
-  }
-  if (const auto* m = std::get_if<DisableRoSpec>(&request))
-    return send(id, DisableRoSpecResponse{{disable(now, m->ro_spec_id)}});
-  if (const auto* m = std::get_if<DeleteRoSpec>(&request))
-    return send(id, DeleteRoSpecResponse{{remove(now, m->ro_spec_id)}});
-  if (const auto* m = std::get_if<StartRoSpec>(&request)) {
-    const LLRPStatus status = start(now, m->ro_spec_id);
-    return send(id, StartRoSpecResponse{{status}});
-  }
-  if (const auto* m = std::get_if<StopRoSpec>(&request))
-    return send(id, StopRoSpecResponse{{stop(now, m->ro_spec_id)}});
   if (std::holds_alternative<DeleteAccessSpec>(request)) return send(id, DeleteAccessSpecResponse{});
   if (std::holds_alternative<GetReport>(request)) return flush_reports(true);
   if (std::holds_alternative<KeepaliveAck>(request) || std::holds_alternative<EnableEventsAndReports>(request)) return;
-  if (std::holds_alternative<GetRoSpecs>(request)) {
-    GetRoSpecsResponse response;
-    if (state_ != SpecState::kNone) {
-      response.ro_specs = {spec_};
-      response.ro_specs[0].current_state = static_cast<std::uint8_t>(state_);
-    }
-    return send(id, response);
-  }
   if (std::holds_alternative<CloseConnection>(request)) {
     send(*client_, id, CloseConnectionResponse{}, true);
     return on_closed(*client_);
   }
-  const auto* custom = std::get_if<CustomMessage>(&request);
-  if (custom != nullptr && custom->vendor_identifier == kImpinj && custom->message_subtype == kImpinjEnableExtensions &&
-      !model_.troubles.no_phase) {
+  if (const auto* custom = std::get_if<CustomMessage>(&request); custom != nullptr && enables_extensions(*custom)) {
     extensions_ = true;
     // LLRPStatus: success, no text.
     return send(id, CustomMessage{kImpinj, kImpinjEnableExtensionsResponse, {0x01, 0x1F, 0, 8, 0, 0, 0, 0}});
   }
   const auto* raw = std::get_if<RawMessage>(&request);
   const bool version = raw != nullptr && (raw->type == kGetSupportedVersion || raw->type == kSetProtocolVersion);
-  send(id, ErrorMessage{{{version ? kUnsupportedVersion : kUnsupportedMessage,
-                          version ? "Unsupported version" : "Unsupported message",
-                          {},
-                          {}}}});
+  if (version) return send(id, ErrorMessage{{{kUnsupportedVersion, "Unsupported version", {}, {}}}});
+  send(id, ErrorMessage{{{kUnsupportedMessage, "Unsupported message", {}, {}}}});
+}
+
+bool SimulatedReader::enables_extensions(const CustomMessage& message) const {
+  return message.vendor_identifier == kImpinj && message.message_subtype == kImpinjEnableExtensions &&
+         !model_.troubles.no_phase;
+}
+
+// What is done to the ROSpec comes before the answer: its first event was seen to.
+bool SimulatedReader::answer_about_spec(DeviceTime now, std::uint32_t id, const Body& request) {
+  Body response = RawMessage{};
+  if (const auto* m = std::get_if<AddRoSpec>(&request)) response = AddRoSpecResponse{{add(m->ro_spec)}};
+  if (const auto* m = std::get_if<EnableRoSpec>(&request))
+    response = EnableRoSpecResponse{{enable(now, m->ro_spec_id)}};
+  if (const auto* m = std::get_if<DisableRoSpec>(&request))
+    response = DisableRoSpecResponse{{disable(now, m->ro_spec_id)}};
+  if (const auto* m = std::get_if<DeleteRoSpec>(&request))
+    response = DeleteRoSpecResponse{{remove(now, m->ro_spec_id)}};
+  if (const auto* m = std::get_if<StartRoSpec>(&request)) response = StartRoSpecResponse{{start(now, m->ro_spec_id)}};
+  if (const auto* m = std::get_if<StopRoSpec>(&request)) response = StopRoSpecResponse{{stop(now, m->ro_spec_id)}};
+  if (std::holds_alternative<GetRoSpecs>(request)) {
+    GetRoSpecsResponse specs;
+    if (state_ != SpecState::kNone) specs.ro_specs = {spec_};
+    for (ROSpec& spec : specs.ro_specs) spec.current_state = static_cast<std::uint8_t>(state_);
+    response = std::move(specs);
+  }
+  if (std::holds_alternative<RawMessage>(response)) return false;
+  send(id, std::move(response));
+  return true;
 }
 
 LLRPStatus SimulatedReader::add(const ROSpec& spec) {

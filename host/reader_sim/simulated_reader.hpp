@@ -63,7 +63,6 @@ class SimulatedReader {
   [[nodiscard]] DeviceTime deadline() const;  // on_time is due then; far away if nothing is
 
   [[nodiscard]] bool active() const { return state_ == SpecState::kActive; }
-  [[nodiscard]] bool finished() const { return !model_.loop && started_ && next_read_ >= model_.reads.size(); }
   // What has been reported, on the reader's clock, in order: the truth of a test.
   [[nodiscard]] const std::vector<TagRead>& reported() const { return reported_; }
 
@@ -72,6 +71,8 @@ class SimulatedReader {
 
   void on_frame(DeviceTime now, std::span<const std::uint8_t> frame);
   void answer(DeviceTime now, std::uint32_t id, const llrp::Body& request);
+  bool answer_about_spec(DeviceTime now, std::uint32_t id, const llrp::Body& request);  // false: it is about another
+  [[nodiscard]] bool enables_extensions(const llrp::CustomMessage& message) const;
   llrp::LLRPStatus add(const llrp::ROSpec& spec);
   llrp::LLRPStatus enable(DeviceTime now, std::uint32_t id);
   llrp::LLRPStatus disable(DeviceTime now, std::uint32_t id);
@@ -88,6 +89,7 @@ class SimulatedReader {
   void flush_reports(bool even_if_empty);
   void play_troubles(DeviceTime now);
   llrp::TagReportData tag_report(const TagRead& read, std::uint16_t seen_count);
+  void select_parameters(const TagRead& read, llrp::TagReportData& tag) const;
   void select_extensions(const TagRead& read, llrp::TagReportData& tag) const;
   void omit_unchanged(llrp::TagReportData& tag);
   [[nodiscard]] bool selected(std::uint8_t port) const;

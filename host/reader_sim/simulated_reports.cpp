@@ -31,6 +31,13 @@ void keep_changed(std::optional<T>& now, std::optional<T>& last, auto member) {
   if (same) now.reset();
 }
 
+EPCParameter epc_parameter(const std::vector<std::uint8_t>& epc) {
+  EPC_96 fixed;
+  if (epc.size() != fixed.epc.size()) return EPCData{{static_cast<std::uint16_t>(8 * epc.size()), epc}};
+  std::copy(epc.begin(), epc.end(), fixed.epc.begin());
+  return fixed;
+}
+
 }  // namespace
 
 ReaderTime SimulatedReader::reader_time(DeviceTime time) const {
@@ -144,21 +151,26 @@ void SimulatedReader::flush_reports(bool even_if_empty) {
 }
 
 TagReportData SimulatedReader::tag_report(const TagRead& read, std::uint16_t seen_count) {
-  static const TagReportContentSelector kAll{true, true, true, true, true, true, true, true, true, true, {}};
-  const TagReportContentSelector& select =
-      spec_.ro_report_spec ? spec_.ro_report_spec->tag_report_content_selector : kAll;
   TagReportData tag;
   std::vector<std::uint8_t> epc(read.epc.bytes().begin(), read.epc.bytes().end());
   if (model_.troubles.long_epc) epc.insert(epc.end(), {0xAB, 0xCD, 0xEF, 0x01});
-  EPC_96 fixed;
-  if (epc.size() == fixed.epc.size()) {
-    std::copy(epc.begin(), epc.end(), fixed.epc.begin());
-    tag.epc_parameter = fixed;
-  } else {
-    tag.epc_parameter = EPCData{{static_cast<std::uint16_t>(8 * epc.size()), epc}};
-  }
-  const ReaderTime stamp = reader_time(read.time);
-  const auto us = static_cast<std::uint64_t>(stamp.us());
+  tag.epc_parameter = epc_parameter(epc);
+  TagRead truth = read;
+  truth.epc = Epc::from_bytes(epc).value();
+  truth.reader_time = reader_time(read.time);
+  truth.seen_count = seen_count;
+  reported_.push_back(truth);
+  select_parameters(truth, tag);
+  select_extensions(truth, tag);
+  if (model_.troubles.omit_unchanged) omit_unchanged(tag);
+  return tag;
+}
+
+void SimulatedReader::select_parameters(const TagRead& read, TagReportData& tag) const {
+  static const TagReportContentSelector kAll{true, true, true, true, true, true, true, true, true, true, {}};
+  const TagReportContentSelector& select =
+      spec_.ro_report_spec ? spec_.ro_report_spec->tag_report_content_selector : kAll;
+  const auto us = static_cast<std::uint64_t>(read.reader_time.us());
   const auto channel = std::find(model_.channels_khz.begin(), model_.channels_khz.end(), read.frequency_hz / 1000);
   if (select.enable_ro_spec_id) tag.ro_spec_id = ROSpecID{spec_.ro_spec_id};
   if (select.enable_spec_index) tag.spec_index = SpecIndex{1};
@@ -174,16 +186,8 @@ TagReportData SimulatedReader::tag_report(const TagRead& read, std::uint16_t see
     if (select.enable_first_seen_timestamp) tag.first_seen_timestamp_utc = FirstSeenTimestampUTC{us};
     if (select.enable_last_seen_timestamp) tag.last_seen_timestamp_utc = LastSeenTimestampUTC{us};
   }
-  if (select.enable_tag_seen_count) tag.tag_seen_count = TagSeenCount{seen_count};
-  tag.access_spec_id = AccessSpecID{0};
-  select_extensions(read, tag);
-  if (model_.troubles.omit_unchanged) omit_unchanged(tag);
-  TagRead truth = read;
-  truth.epc = Epc::from_bytes(epc).value();
-  truth.reader_time = stamp;
-  truth.seen_count = seen_count;
-  reported_.push_back(truth);
-  return tag;
+  if (select.enable_tag_seen_count) tag.tag_seen_count = TagSeenCount{read.seen_count};
+  tag.access_spec_id = AccessSpecID{0};  // of inventory reports, too: as R420 6.4.1
 }
 
 void SimulatedReader::select_extensions(const TagRead& read, TagReportData& tag) const {

@@ -1,6 +1,6 @@
 // The one table of LLRP 1.0.1: every message and parameter is a struct that lists its fields, in wire order,
 // once: `fields(v, s)` hands each field of `s` to the visitor `v`. Encoder, decoder and whoever prints are
-// such visitors:
+// such visitors (the headers beside are tables, and longer than others for that):
 //
 //   v.value(name, x)       integers (big-endian), counted strings and arrays, bit strings, 96-bit EPCs
 //   v.bits(name, x, n)     n bits of a byte or two, most significant first
