@@ -24,10 +24,10 @@ get_ready() {
   "$rfmvo" reader-sim --scene "$scene" --seed "$seed" --port 0 --start-at $start >"$out/reader.txt" &
   reader=$!
   "$rfmvo" simulate --scene "$scene" --seed "$seed" --start-at $start --no-frames --out "$out/poses.lcmlog" \
-    --truth "$out/truth"
+    --truth "$out/truth" || exit 1
   rm "$out/poses.lcmlog"
   until port=$(sed -n 's/^reader on .* port \([0-9]*\),.*/\1/p' "$out/reader.txt") && [ -n "$port" ]; do
-    kill -0 $reader
+    kill -0 $reader || exit 1
     sleep 0.1
   done
   [ "$(date +%s)" -lt $((start - 1)) ]
