@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files demo-replay test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build demo demo-files demo-live test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -25,8 +25,14 @@ build/%/build.ninja: CMakePresets.json
 	@cmake --preset $* $(CCACHE)
 	@touch $@
 
-# A simulated aisle, live: a simulated reader over TCP and rendered frames into rfmvod, then the report.
+# A simulated aisle from raw events to a report.
 demo: build
+	@$(MAKE) --no-print-directory demo-files
+	@cat demo/evaluation.txt
+	@echo "report: $(CURDIR)/demo/report.html"
+
+# The same aisle, live: a simulated reader over TCP and rendered frames into rfmvod, then the report.
+demo-live: build
 	@$(MAKE) --no-print-directory demo-live-files
 	@cat demo/live/evaluation.txt
 	@echo "report: $(CURDIR)/demo/live/report.html"
@@ -38,17 +44,15 @@ demo-live-files: demo/frames/times.txt
 	  >demo/live/evaluation.txt
 	@$(rfmvo) report demo/live/result.lcmlog --truth demo/live/truth --out demo/live/report.html
 
-# The same aisle from its journal, as fast as this machine can: the same bits every time.
-demo-replay: build
-	@$(MAKE) --no-print-directory demo-files
-	@cat demo/evaluation.txt
-	@echo "report: $(CURDIR)/demo/report.html"
+demo/frames/times.txt: $(rfmvo)
+	@mkdir -p demo/frames
+	$(rfmvo) simulate --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
 
 demo-files: demo/report.html
 
-demo/run.lcmlog demo/frames/times.txt &: $(rfmvo)
+demo/run.lcmlog: $(rfmvo)
 	@mkdir -p demo
-	$(rfmvo) simulate --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth --frames-to demo/frames
+	$(rfmvo) simulate --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth
 
 demo/result.lcmlog: demo/run.lcmlog $(rfmvo)
 	$(rfmvo) replay demo/run.lcmlog --out demo/result.lcmlog --json demo/replay.json
