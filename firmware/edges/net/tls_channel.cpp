@@ -29,14 +29,16 @@ class TlsChannel : public Channel {
     ERR_clear_error();
     errno = 0;
     std::size_t count = 0;
-    return result(SSL_read_ex(ssl_.get(), into.data(), into.size(), &count), count);
+    const int ok = SSL_read_ex(ssl_.get(), into.data(), into.size(), &count);
+    return result(ok, count);
   }
   Io write(std::span<const std::uint8_t> from) override {
     if (from.empty()) return {};
     ERR_clear_error();
     errno = 0;
     std::size_t count = 0;
-    return result(SSL_write_ex(ssl_.get(), from.data(), from.size(), &count), count);
+    const int ok = SSL_write_ex(ssl_.get(), from.data(), from.size(), &count);
+    return result(ok, count);
   }
   [[nodiscard]] bool wants_write() const override { return SSL_want_write(ssl_.get()) != 0; }
   [[nodiscard]] int fd() const override { return fd_.get(); }
