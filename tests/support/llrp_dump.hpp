@@ -28,7 +28,7 @@ class LlrpDump {
   void child(const std::variant<T...>& choice) {
     std::visit(
         [this]<class U>(const U& x) {
-          if constexpr (!std::is_same_v<U, std::monostate>) child(x);
+          if constexpr (!std::is_same_v<U, std::monostate>) this->child(x);
         },
         choice);
   }

@@ -34,7 +34,7 @@ class Encoder {
   void child(const std::variant<T...>& choice) {
     std::visit(
         [this](const auto& x) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(x)>, std::monostate>) child(x);
+          if constexpr (!std::is_same_v<std::decay_t<decltype(x)>, std::monostate>) this->child(x);
         },
         choice);
   }
