@@ -21,7 +21,7 @@ Result<std::vector<std::uint16_t>> ports_of(const std::string& text) {
     std::uint16_t port = 0;
     const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), port);
     left.remove_prefix(static_cast<std::size_t>(end - left.data()));
-    const bool more = !left.empty() && left.front() == ',';
+    const bool more = left.size() > 1 && left.front() == ',';
     if (error != std::errc{} || port < 1 || port > 255 || (!left.empty() && !more))
       return Error{ErrorCode::kMalformed, "expects antenna ports from 1, such as 1,2, not \"" + text + "\"",
                    "reader.antennas"};
