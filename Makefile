@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files reproduce test test-asan test-clang test-arm64 bench format format-check tidy packages clean
+.PHONY: build demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -30,6 +30,23 @@ demo: build
 	@$(MAKE) --no-print-directory demo-files
 	@cat demo/evaluation.txt
 	@echo "report: $(CURDIR)/demo/report.html"
+
+# The same aisle, live: a simulated reader over TCP and rendered frames into rfmvod, then the report.
+demo-live: build
+	@$(MAKE) --no-print-directory demo-live-files
+	@cat demo/live/evaluation.txt
+	@echo "report: $(CURDIR)/demo/live/report.html"
+
+.PHONY: demo-live-files
+demo-live-files: demo/frames/times.txt
+	@host/live_demo.sh build/release aisle 1 demo/frames demo/live
+	@$(rfmvo) evaluate demo/live/result.lcmlog --truth demo/live/truth --json demo/live/evaluation.json \
+	  >demo/live/evaluation.txt
+	@$(rfmvo) report demo/live/result.lcmlog --truth demo/live/truth --out demo/live/report.html
+
+demo/frames/times.txt: $(rfmvo)
+	@mkdir -p demo/frames
+	$(rfmvo) simulate --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
 
 demo-files: demo/report.html
 
@@ -74,6 +91,18 @@ test-arm64:
 bench: build
 	build/release/tests/rfmvo_benchmarks
 
+# What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
+FUZZ_SECONDS ?= 30
+fuzz:
+	@cmake/install-packages.sh clang libclang-rt-14-dev
+	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ $(CCACHE) >/dev/null
+	@cmake --build build/fuzz -j $(JOBS)
+	@set -e; for target in llrp config journal; do \
+	  echo "$$target: $(FUZZ_SECONDS) s"; mkdir -p build/fuzz/corpus/$$target; \
+	  build/fuzz/$${target}_fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -rss_limit_mb=4096 -verbosity=0 \
+	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target $(wildcard ../shared/data/llrp/malformed); \
+	done
+
 sources = $(shell git ls-files '*.cpp' '*.hpp')
 
 format:
@@ -90,4 +119,4 @@ tidy: build
 
 # The Python environment and downloaded packages stay.
 clean:
-	rm -rf build/release build/asan build/clang build/arm64 demo reproduction
+	rm -rf build/release build/asan build/clang build/arm64 build/fuzz demo reproduction

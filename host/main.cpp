@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   rfmvo::add_bound_command(app, exit_code);
   rfmvo::add_reproduce_command(app, exit_code);
   rfmvo::add_vo_command(app, exit_code);
+  rfmvo::add_reader_sim_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -72,6 +72,23 @@ struct LcmConfig {
 
 struct CameraConfig {
   std::string source = "";            // images:DIR | journal:FILE
+  double start_time_s = 0.0;          // of images: device time of the first one, if they are played live
+};
+
+struct ReaderConfig {
+  std::string backend = "own";        // own | ltkcpp
+  std::string address = "";           // empty: no reader
+  std::int64_t port = 0;              // 0: 5084, with TLS 5085
+  bool tls = false;
+  std::string tls_ca = "";
+  std::string antennas = "";          // ports, "1,2"; empty: those of the calibration
+  std::string phase_sign = "grows";   // grows | falls, with distance
+  std::int64_t mode = -1;
+  std::int64_t session = 1;
+  double power_dbm = 0.0;
+  std::int64_t hop_table = 0;
+  std::int64_t channel = 0;
+  double keepalive_s = 1.0;
 };
 
 struct JournalConfig {
@@ -90,6 +107,7 @@ struct Config {
   VisionConfig vision;
   LcmConfig lcm;
   CameraConfig camera;
+  ReaderConfig reader;
   JournalConfig journal;
   DaemonConfig daemon;
 };

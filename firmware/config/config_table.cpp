@@ -23,6 +23,7 @@ constexpr auto kJoint = &Config::joint;
 constexpr auto kVision = &Config::vision;
 constexpr auto kLcm = &Config::lcm;
 constexpr auto kCamera = &Config::camera;
+constexpr auto kReader = &Config::reader;
 constexpr auto kJournal = &Config::journal;
 constexpr auto kDaemon = &Config::daemon;
 
@@ -30,6 +31,7 @@ using E = EstimatorConfig;
 using P = PaperConfig;
 using J = JointConfig;
 using V = VisionConfig;
+using R = ReaderConfig;
 
 // clang-format off
 const ConfigRow kRows[] = {
@@ -131,6 +133,36 @@ const ConfigRow kRows[] = {
 
     {"camera.source", "", &at<kCamera, &CameraConfig::source>, 0, 0, "",
      "images:DIR (a folder with images/, times.txt, calib.txt) or journal:FILE (all events of a journal)"},
+
+    {"camera.start_time_s", "s", &at<kCamera, &CameraConfig::start_time_s>, 0, 9e9, "",
+     "images are played live and the first one is of this time since 1970; 0: as recorded, as fast as they can be used"},
+
+    {"reader.backend", "", &at<kReader, &R::backend>, 0, 0, "own|ltkcpp",
+     "what speaks to the reader: own, or the LLRP Toolkit's C++ library if this program was built with it"},
+    {"reader.address", "", &at<kReader, &R::address>, 0, 0, "",
+     "name or IPv4 or IPv6 address of the RFID reader; empty: no reader"},
+    {"reader.port", "", &at<kReader, &R::port>, 0, 65535, "",
+     "TCP port of the reader; 0: 5084, with TLS 5085"},
+    {"reader.tls", "", &at<kReader, &R::tls>, 0, 0, "",
+     "encrypt the connection"},
+    {"reader.tls_ca", "", &at<kReader, &R::tls_ca>, 0, 0, "",
+     "PEM file of the certificates to trust; empty: any certificate is taken, so the reader is not authenticated"},
+    {"reader.antennas", "", &at<kReader, &R::antennas>, 0, 0, "",
+     "antenna ports to read with, such as 1,2; empty: those of the calibration"},
+    {"reader.phase_sign", "", &at<kReader, &R::phase_sign>, 0, 0, "grows|falls",
+     "whether the phase that the reader reports grows or falls with distance"},
+    {"reader.mode", "", &at<kReader, &R::mode>, -1, 65535, "",
+     "reader mode, of the reader's own table; a fixed one is best for phase; -1: 2 if there is, else the first fixed one"},
+    {"reader.session", "", &at<kReader, &R::session>, 0, 3, "",
+     "Gen2 session; 0 and 1 give repeated reads"},
+    {"reader.power_dbm", "dBm", &at<kReader, &R::power_dbm>, 0, 36, "",
+     "power at the antenna port, the reader's next lower step; 0: its highest"},
+    {"reader.hop_table", "", &at<kReader, &R::hop_table>, 0, 255, "",
+     "which of the reader's own hop tables; 0: its first"},
+    {"reader.channel", "", &at<kReader, &R::channel>, 0, 65535, "",
+     "channel of a reader that does not hop, counted from 1 in its own table; 0: its first"},
+    {"reader.keepalive_s", "s", &at<kReader, &R::keepalive_s>, 0.1, 60, "",
+     "the reader must show a sign of life this often; after three without, it is connected anew"},
 
     {"journal.directory", "", &at<kJournal, &JournalConfig::directory>, 0, 0, "",
      "folder of the journals; empty: no journal"},

@@ -12,6 +12,9 @@
 #include "edges/image_folder.hpp"
 #include "edges/journal.hpp"
 #include "edges/lcm_bus.hpp"
+#include "edges/live_images.hpp"
+#include "edges/live_source.hpp"
+#include "edges/open_reader.hpp"
 #include "edges/sources.hpp"
 #include "edges/stop_signal.hpp"
 #include "edges/tee.hpp"
@@ -24,6 +27,7 @@ struct Options {
   std::string config;
   std::string journal;  // overrides journal.directory
   std::string result;   // what was published, as a result log
+  std::vector<std::string> settings;  // "section.key=value", over the configuration
 };
 
 struct OpenedSource {
@@ -40,6 +44,24 @@ Result<OpenedSource> open_journal(const std::string& path, const Config& config)
   return OpenedSource{std::move(reader).value(), summary.value().start.time};
 }
 
+// Images as if taken now, and the reader, if there is one.
+Result<OpenedSource> open_live(std::unique_ptr<ImageFolder> folder, const Config& config,
+                               const std::optional<Calibration>& calibration) {
+  const DeviceClockFunction clock = device_clock();
+  std::unique_ptr<Reader> reader;
+  if (!config.reader.address.empty()) {
+    auto opened = open_reader(config, calibration, clock);
+    if (!opened) return opened.error();
+    reader = std::move(opened).value();
+  }
+  const double start_s = config.camera.start_time_s;
+  const DeviceTime first = start_s > 0.0 ? DeviceTime{Duration::from_seconds(start_s).ns} : clock();
+  const auto make_camera = [&](const std::atomic<bool>& stop) {
+    return std::make_unique<LiveImages>(std::move(folder), first, clock, stop);
+  };
+  return OpenedSource{std::make_unique<LiveSource>(make_camera, std::move(reader), clock), first};
+}
+
 Result<OpenedSource> open_images(const std::string& directory, const Config& config,
                                  const std::optional<Calibration>& calibration) {
   auto folder = ImageFolder::open(directory);
@@ -48,17 +70,22 @@ Result<OpenedSource> open_images(const std::string& directory, const Config& con
     return Error{ErrorCode::kUnsupported, "images have no camera poses; \"frames\" is needed", "estimator.pose_source"};
   const CameraModel& own = folder.value()->camera();
   if (calibration && (calibration->camera.width_px != own.width_px || calibration->camera.height_px != own.height_px))
-    return Error{ErrorCode::kMalformed, "the camera's width_px and height_px are not those of " + directory + "/calib.txt",
+    return Error{ErrorCode::kMalformed,
+                 "the camera's width_px and height_px are not those of " + directory + "/calib.txt",
                  config.daemon.calibration};
-  return OpenedSource{std::move(folder).value(), DeviceTime{}};
+  if (config.camera.start_time_s == 0.0 && config.reader.address.empty())
+    return OpenedSource{std::move(folder).value(), DeviceTime{}};
+  return open_live(std::move(folder).value(), config, calibration);
 }
 
 Result<OpenedSource> open_source(const Config& config, const std::optional<Calibration>& calibration) {
   const std::string& source = config.camera.source;
   constexpr std::string_view kJournal = "journal:", kImages = "images:";
+  if (source.starts_with(kJournal) && !config.reader.address.empty())
+    return Error{ErrorCode::kUnsupported, "a journal has its own reads; reader.address must be empty", "camera.source"};
   if (source.starts_with(kJournal)) return open_journal(source.substr(kJournal.size()), config);
   if (source.starts_with(kImages)) return open_images(source.substr(kImages.size()), config, calibration);
-  const std::string known = "this version knows images:DIR and journal:FILE, no camera hardware and no RFID reader yet";
+  const std::string known = "this version knows images:DIR and journal:FILE, no camera hardware yet";
   if (source.empty()) return Error{ErrorCode::kMalformed, "is not set; " + known, "camera.source"};
   return Error{ErrorCode::kUnsupported, "\"" + source + "\" is not supported; " + known, "camera.source"};
 }
@@ -124,10 +151,21 @@ Result<std::optional<Calibration>> calibration_of(const Config& config) {
   return std::optional<Calibration>(std::move(calibration).value());
 }
 
+Status apply(const std::vector<std::string>& settings, Config& config) {
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos)
+      return Error{ErrorCode::kMalformed, "expects section.key=value, not " + setting, "--set"};
+    if (const Status s = set_value_from_text(config, setting.substr(0, equals), setting.substr(equals + 1)); !s) return s;
+  }
+  return check_consistency(config);
+}
+
 Status serve(const Options& options) {
   auto read = read_config(options.config);
   if (!read) return read.error();
   Config config = std::move(read).value();
+  if (const Status s = apply(options.settings, config); !s) return s;
   if (!options.journal.empty()) config.journal.directory = options.journal;
   const auto calibration = calibration_of(config);
   if (!calibration) return calibration.error();
@@ -182,6 +220,8 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config, "Configuration (TOML)")->required();
   app.add_option("--journal", options.journal, "Folder for the journal, instead of journal.directory");
   app.add_option("--result", options.result, "Write what is published to this log, too");
+  app.add_option("--set", options.settings, "One setting over the configuration: section.key=value")
+      ->allow_extra_args(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -42,7 +42,8 @@ Status check_route(const std::string& url) {
   if (failed == 0) return Done{};
   return Error{ErrorCode::kUnsupported,
                "no multicast route: " + std::string(std::strerror(reason)) +
-                   "; for this machine alone: ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo", url};
+                   "; for this machine alone: ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo",
+               url};
 }
 
 }  // namespace

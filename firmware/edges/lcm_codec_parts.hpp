@@ -15,6 +15,7 @@
 #include "base/result.hpp"
 #include "edges/lcm_codec.hpp"
 #include "rfmvo/camera_pose_t.hpp"
+#include "rfmvo/reader_status_t.hpp"
 
 namespace rfmvo::codec {
 
@@ -111,5 +112,7 @@ bool fits(std::int64_t x) {
 
 camera_pose_t message_of(const CameraPose& pose);
 Result<CameraPose> camera_pose_of(const camera_pose_t& message, std::string_view channel);
+reader_status_t message_of(const ReaderStatus& status);
+Result<ReaderStatus> reader_status_of(const reader_status_t& message, std::string_view channel);
 
 }  // namespace rfmvo::codec

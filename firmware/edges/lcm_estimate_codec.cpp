@@ -113,6 +113,7 @@ std::vector<LcmMessage> encode_one(const Health& health, std::string_view prefix
   m.tags_located = static_cast<std::int32_t>(health.tags_located);
   m.faults = static_cast<std::int64_t>(health.faults);
   m.last_fault = health.last_fault;
+  m.reader = message_of(health.reader);
   return {pack(m, prefix, "HEALTH")};
 }
 
@@ -232,7 +233,8 @@ Result<Estimate> decode_map_revision(std::string_view channel, Bytes data) {
   map_revision_t m;
   if (const Status s = unpack(m, data, channel); !s) return s.error();
   if (!fits<std::uint32_t>(m.revision)) return malformed("revision is out of range", channel);
-  return Estimate(MapRevision{DeviceTime::from_us(m.utime), static_cast<std::uint32_t>(m.revision), std::move(m.reason)});
+  return Estimate(
+      MapRevision{DeviceTime::from_us(m.utime), static_cast<std::uint32_t>(m.revision), std::move(m.reason)});
 }
 
 Result<Estimate> decode_health(std::string_view channel, Bytes data) {
@@ -257,6 +259,9 @@ Result<Estimate> decode_health(std::string_view channel, Bytes data) {
   health.tags_located = static_cast<std::uint32_t>(m.tags_located);
   health.faults = static_cast<std::uint64_t>(m.faults);
   health.last_fault = std::move(m.last_fault);
+  auto reader = reader_status_of(m.reader, channel);
+  if (!reader) return reader.error();
+  health.reader = reader.value();
   return Estimate(std::move(health));
 }
 
@@ -266,9 +271,9 @@ struct EstimateChannel {
 };
 
 constexpr EstimateChannel kEstimateChannels[] = {
-    {"VO_POSE", decode_vo_pose},         {"TAG", decode_tag},
-    {"SCALE", decode_scale},             {"METRIC_POSE", decode_metric_pose},
-    {"TRAJECTORY", decode_trajectory},   {"MAP_REVISION", decode_map_revision},
+    {"VO_POSE", decode_vo_pose},       {"TAG", decode_tag},
+    {"SCALE", decode_scale},           {"METRIC_POSE", decode_metric_pose},
+    {"TRAJECTORY", decode_trajectory}, {"MAP_REVISION", decode_map_revision},
     {"HEALTH", decode_health},
 };
 

@@ -11,39 +11,6 @@
 #include "rfmvo/tick_t.hpp"
 
 namespace rfmvo {
-namespace codec {
-
-camera_pose_t message_of(const CameraPose& pose) {
-  camera_pose_t m{};
-  m.utime = pose.time.us();
-  m.segment = pose.segment;
-  m.status = static_cast<std::int8_t>(pose.status);
-  m.inliers = pose.inliers;
-  put(m.pos, pose.T_V_C.p_V_C);
-  put(m.orientation, pose.T_V_C.R_V_C);
-  put(m.motion_covariance, pose.motion_covariance);
-  return m;
-}
-
-Result<CameraPose> camera_pose_of(const camera_pose_t& m, std::string_view channel) {
-  if (m.status < camera_pose_t::INITIALISING || m.status > camera_pose_t::LOST)
-    return malformed("unknown status " + std::to_string(m.status), channel);
-  if (!fits<std::uint32_t>(m.segment)) return malformed("segment is out of range", channel);
-  if (m.inliers < 0) return malformed("inliers is negative", channel);
-  if (!finite(m.pos) || !finite(m.motion_covariance)) return malformed("a number is not finite", channel);
-  if (!is_unit(m.orientation)) return malformed("orientation is not a unit quaternion", channel);
-  CameraPose pose;
-  pose.time = DeviceTime::from_us(m.utime);
-  pose.segment = static_cast<std::uint32_t>(m.segment);
-  pose.status = static_cast<VoStatus>(m.status);
-  pose.inliers = m.inliers;
-  pose.T_V_C = {quaternion_of(m.orientation), vector_of(m.pos)};
-  pose.motion_covariance = matrix_of(m.motion_covariance);
-  return pose;
-}
-
-}  // namespace codec
-
 namespace {
 
 using namespace codec;
@@ -93,6 +60,7 @@ LcmMessage encode_one(const TagRead& read, std::string_view prefix) {
   m.frequency_hz = static_cast<std::int32_t>(read.frequency_hz);
   m.rssi_cdbm = read.rssi_cdbm;
   m.seen_count = read.seen_count;
+  m.doppler_hz_q4 = read.doppler_hz_q4;
   return pack(m, prefix, "TAG_READ");
 }
 
@@ -111,6 +79,10 @@ LcmMessage encode_one(const Fault& fault, std::string_view prefix) {
   m.source = bounded(fault.source);
   m.text = bounded(fault.text);
   return pack(m, prefix, "FAULT");
+}
+
+LcmMessage encode_one(const ReaderStatus& status, std::string_view prefix) {
+  return pack(message_of(status), prefix, "READER_STATUS");
 }
 
 LcmMessage encode_one(const Command& command, std::string_view prefix) {
@@ -183,13 +155,18 @@ Result<Event> decode_tag_read(std::string_view channel, Bytes data) {
   if (const Status s = unpack(m, data, channel); !s) return s.error();
   auto epc = Epc::from_bytes({reinterpret_cast<const std::uint8_t*>(m.epc.data()), m.epc.size()});
   if (!epc) return malformed(epc.error().what, channel);
-  if (m.reader_utime > kMaxUtime || m.reader_utime < -kMaxUtime) return malformed("reader_utime is out of range", channel);
-  if (m.port < 1 || !fits<std::uint8_t>(m.port)) return malformed("port " + std::to_string(m.port) + " is out of range", channel);
+  if (m.reader_utime > kMaxUtime || m.reader_utime < -kMaxUtime)
+    return malformed("reader_utime is out of range", channel);
+  if (m.port < 1 || !fits<std::uint8_t>(m.port))
+    return malformed("port " + std::to_string(m.port) + " is out of range", channel);
   if (!fits<std::uint16_t>(m.phase_q16)) return malformed("phase_q16 is out of range", channel);
   if (m.frequency_hz <= 0) return malformed("frequency_hz is out of range", channel);
   if (m.rssi_cdbm < std::numeric_limits<std::int16_t>::min() || m.rssi_cdbm > std::numeric_limits<std::int16_t>::max())
     return malformed("rssi_cdbm is out of range", channel);
   if (!fits<std::uint16_t>(m.seen_count)) return malformed("seen_count is out of range", channel);
+  if (m.doppler_hz_q4 < std::numeric_limits<std::int16_t>::min() ||
+      m.doppler_hz_q4 > std::numeric_limits<std::int16_t>::max())
+    return malformed("doppler_hz_q4 is out of range", channel);
   TagRead read;
   read.time = DeviceTime::from_us(m.utime);
   read.reader_time = ReaderTime::from_us(m.reader_utime);
@@ -199,6 +176,7 @@ Result<Event> decode_tag_read(std::string_view channel, Bytes data) {
   read.frequency_hz = static_cast<std::uint32_t>(m.frequency_hz);
   read.rssi_cdbm = static_cast<std::int16_t>(m.rssi_cdbm);
   read.seen_count = static_cast<std::uint16_t>(m.seen_count);
+  read.doppler_hz_q4 = static_cast<std::int16_t>(m.doppler_hz_q4);
   return Event(read);
 }
 
@@ -224,14 +202,28 @@ Result<Event> decode_command(std::string_view channel, Bytes data) {
   return Event(Command{DeviceTime::from_us(m.utime), std::move(m.key), std::move(m.value)});
 }
 
+Result<Event> decode_reader_status(std::string_view channel, Bytes data) {
+  reader_status_t m;
+  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  auto status = reader_status_of(m, channel);
+  if (!status) return status.error();
+  return Event(status.value());
+}
+
 struct EventChannel {
   std::string_view name;
   Result<Event> (*decode)(std::string_view channel, Bytes data);
 };
 
 constexpr EventChannel kEventChannels[] = {
-    {"START", decode_start}, {"FRAME", decode_frame}, {"CAMERA_POSE", decode_camera_pose}, {"TAG_READ", decode_tag_read},
-    {"TICK", decode_tick},   {"FAULT", decode_fault}, {"COMMAND", decode_command},
+    {"START", decode_start},
+    {"FRAME", decode_frame},
+    {"CAMERA_POSE", decode_camera_pose},
+    {"TAG_READ", decode_tag_read},
+    {"TICK", decode_tick},
+    {"FAULT", decode_fault},
+    {"COMMAND", decode_command},
+    {"READER_STATUS", decode_reader_status},
 };
 
 const EventChannel* find_channel(std::string_view channel, std::string_view prefix) {
@@ -270,8 +262,9 @@ Status decode_image(Frame& frame) {
   if (image.empty()) return malformed("the " + frame.encoding + " image cannot be decoded", where);
   if (image.cols != frame.width_px || image.rows != frame.height_px)
     return malformed("the " + frame.encoding + " image has " + std::to_string(image.cols) + " x " +
-                     std::to_string(image.rows) + " px, declared are " + std::to_string(frame.width_px) + " x " +
-                     std::to_string(frame.height_px), where);
+                         std::to_string(image.rows) + " px, declared are " + std::to_string(frame.width_px) + " x " +
+                         std::to_string(frame.height_px),
+                     where);
   auto grey = std::make_shared<std::vector<std::uint8_t>>();
   grey->reserve(image.total());
   for (int row = 0; row < image.rows; ++row) grey->insert(grey->end(), image.ptr(row), image.ptr(row) + image.cols);

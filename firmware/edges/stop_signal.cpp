@@ -18,6 +18,8 @@ void catch_stop_signals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // and no SA_RESTART
   (void)::sigaction(SIGTERM, &action, nullptr);
   (void)::sigaction(SIGINT, &action, nullptr);
+  // A peer that is gone is an error of the write, not the end of the program.
+  (void)::signal(SIGPIPE, SIG_IGN);
 }
 
 bool stop_requested() { return stop_flag != 0; }

@@ -3,7 +3,7 @@
 
 namespace rfmvo {
 
-// From now on both signals only set the flag; system calls that wait return early. A second signal
+// SIGPIPE is ignored. From now on both signals only set the flag; system calls that wait return early. A second signal
 // ends the program at once.
 void catch_stop_signals();
 [[nodiscard]] bool stop_requested();

@@ -96,6 +96,7 @@ struct Health {
   std::uint32_t tags = 0, tags_located = 0;
   std::uint64_t faults = 0;
   std::string last_fault;
+  ReaderStatus reader;  // the newest; its time is 0 if there was none
 };
 
 using Estimate = std::variant<CameraPose, TagEstimate, ScaleEstimate, MetricPose, Trajectory, MapRevision, Health>;

@@ -57,13 +57,26 @@ struct Fault {
   std::string text;
 };
 
+// How the link to the reader is: at every change, and each second.
+struct ReaderStatus {
+  DeviceTime time;
+  bool reading = false;         // set up, reports may come
+  bool clock_known = false;     // the reader's clock has been seen
+  double clock_offset_s = 0.0;  // device clock less reader clock at `time`; years, if the reader has no clock
+  double clock_drift = 0.0;     // of the offset, s/s
+  double clock_sigma_s = 0.0;   // 1 sigma of the offset, but for the shortest delay of the network
+  std::uint32_t clock_steps = 0;
+  std::uint32_t connections = 0;
+  std::uint64_t reports_lost = 0;  // of tags, that made no read: no phase, no channel, ...
+};
+
 struct Command {
   DeviceTime time;
   std::string key;
   std::string value;
 };
 
-using Event = std::variant<Start, Frame, CameraPose, TagRead, Tick, Fault, Command>;
+using Event = std::variant<Start, Frame, CameraPose, TagRead, Tick, Fault, ReaderStatus, Command>;
 
 [[nodiscard]] inline DeviceTime time_of(const Event& event) {
   return std::visit([](const auto& e) { return e.time; }, event);

@@ -28,6 +28,7 @@ struct Pipeline::State {
   void on(const TagRead& read);
   void on(const Tick&) {}
   void on(const Fault& fault);
+  void on(const ReaderStatus& status) { health.reader = status; }
   void on(const Command&) {}
   void track(const CameraPose& pose);
   void feed(const std::vector<SampledRead>& reads);

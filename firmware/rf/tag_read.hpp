@@ -18,6 +18,7 @@ struct TagRead {
   std::uint32_t frequency_hz = 0;  // carrier, from the reader's own channel table
   std::int16_t rssi_cdbm = 0;      // peak RSSI, 1/100 dBm
   std::uint16_t seen_count = 1;    // phase belongs to this singulation only if 1 (LLRP 1.1 section 14.2.3)
+  std::int16_t doppler_hz_q4 = 0;  // 1/16 Hz, as Impinj reports it; 0 = not reported
 };
 
 }  // namespace rfmvo

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <iterator>
 
+#include "rf/epc_uri.hpp"
+
 namespace rfmvo {
 namespace {
 
@@ -39,7 +41,7 @@ std::string to_tum(const evaluate::LastEstimates& last) {
 
 std::string to_tags_csv(const evaluate::LastEstimates& last) {
   std::string text =
-      "epc,status,x_m,y_m,z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,hdop,reads,segment\n";
+      "epc,status,x_m,y_m,z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,hdop,reads,segment,uri\n";
   for (const auto& [epc, tag] : last.tags) {
     fmt::format_to(std::back_inserter(text), "{},{},", epc.hex(), evaluate::label_of(tag.status));
     if (evaluate::is_located(tag)) {
@@ -50,7 +52,7 @@ std::string to_tags_csv(const evaluate::LastEstimates& last) {
     } else {
       text += ",,,,,,,,,";
     }
-    fmt::format_to(std::back_inserter(text), ",{},{}\n", tag.reads, tag.segment);
+    fmt::format_to(std::back_inserter(text), ",{},{},{}\n", tag.reads, tag.segment, epc_tag_uri(epc).value_or(""));
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include "commands/simulation_options.hpp"
 #include "config/config.hpp"
 #include "edges/journal.hpp"
+#include "commands/frame_folder.hpp"
 #include "simulate/simulation.hpp"
 
 namespace rfmvo {
@@ -14,7 +15,8 @@ namespace {
 struct Arguments {
   simulate::Options options;
   bool no_frames = false;
-  std::string out, truth_directory, frames_directory;
+  double start_at_s = 0.0;  // since 1970; 0: the simulation's own
+  std::string out, truth_directory, frames_directory, frames_to;
   std::string prefix = LcmConfig{}.prefix;
 };
 
@@ -26,8 +28,20 @@ Status run(const Arguments& arguments) {
   auto writer = LogWriter::create(arguments.out, arguments.prefix);
   if (!writer.ok()) return writer.error();
   const std::unique_ptr<LogWriter> log = std::move(writer).value();
-  const auto truth = simulate::simulate(arguments.options, [&](const Event& event) { return log->write(event); });
+  std::optional<FrameFolder> folder;
+  if (!arguments.frames_to.empty()) {
+    auto made = FrameFolder::create(arguments.frames_to);
+    if (!made.ok()) return made.error();
+    folder = std::move(made).value();
+  }
+  const auto truth = simulate::simulate(arguments.options, [&](const Event& event) -> Status {
+    if (folder)
+      if (Status s = folder->write(event); !s.ok()) return s;
+    return log->write(event);
+  });
   if (!truth.ok()) return truth.error();
+  if (folder)
+    if (Status s = folder->close(); !s.ok()) return s;
   // The truth first: a journal that is there always has its truth.
   if (Status s = simulate::write_truth(truth.value(), arguments.truth_directory); !s.ok()) return s;
   return log->close();
@@ -46,12 +60,19 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   truth->needs(out);
   command->add_option("--frames", arguments->frames_directory,
                       "Write the pictures as a folder: images/, times.txt, calib.txt, groundtruth.txt");
+  command->add_option("--start-at", arguments->start_at_s, "Time of the first frame, seconds since 1970")
+      ->check(CLI::Range(1.0, 9e9));
+  command->add_option("--frames-to", arguments->frames_to,
+                      "Write the frames to this folder too, with calibration and a configuration that plays them live")
+      ->needs(out);
   command->add_flag("--no-frames", arguments->no_frames, "Camera poses only, no images");
   command->add_option("--prefix", arguments->prefix, "Of the LCM channels")->capture_default_str();
   command->callback([arguments, &exit_code] {
     if (arguments->out.empty() && arguments->frames_directory.empty())
       throw CLI::RequiredError("--out and --truth, or --frames");
     arguments->options.frames = !arguments->no_frames;
+    if (arguments->start_at_s > 0.0)
+      arguments->options.start = DeviceTime{Duration::from_seconds(arguments->start_at_s).ns};
     const Status status = run(*arguments);
     if (!status.ok()) std::fprintf(stderr, "rfmvo simulate: %s\n", status.error().text().c_str());
     exit_code = status.ok() ? 0 : 1;

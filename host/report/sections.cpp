@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "report/html.hpp"
+#include "rf/epc_uri.hpp"
 
 namespace rfmvo::report {
 namespace {
@@ -84,11 +85,17 @@ std::string error_cells(const ReportData& data, const Epc& epc) {
   return cell(number(tag->error_m)) + cell(number(tag->camera_relative_error_m));
 }
 
+// The hex, and what GS1 reads in it.
+std::string epc_text(const Epc& epc) {
+  const auto uri = epc_tag_uri(epc);
+  return escape(epc.hex()) + (uri ? "<br><small>" + escape(*uri) + "</small>" : "");
+}
+
 std::string tag_row(const ReportData& data, std::size_t index) {
   const TagEstimate& tag = data.tags[index];
   std::string row = fmt::format(
       "<tr><td>{}</td><td class=\"text epc\">{}</td><td class=\"text\"><span class=\"badge {}\">{}</span></td>",
-      index + 1, escape(tag.epc.hex()), class_of(tag.status), evaluate::label_of(tag.status));
+      index + 1, epc_text(tag.epc), class_of(tag.status), evaluate::label_of(tag.status));
   if (evaluate::is_located(tag)) {
     const Eigen::Vector3d sigma = kCmPerM * evaluate::sigma_of(tag.covariance_m2);
     for (int i = 0; i < 3; ++i) row += cell(fmt::format("{:.3f}", tag.p_W_X_m[i]));
@@ -110,7 +117,7 @@ std::string unseen_rows(const ReportData& data) {
     if (tag.estimate) continue;
     rows += fmt::format(
         "<tr><td></td><td class=\"text epc\">{}</td><td class=\"text\"><span class=\"badge bad\">NOT_SEEN</span></td>",
-        escape(tag.epc.hex()));
+        epc_text(tag.epc));
     for (int i = 0; i < 8; ++i) rows += cell("–");
     rows += cell("0") + cell("–") + cell("–") + "</tr>\n";
   }
@@ -185,6 +192,11 @@ std::string health_table(const ReportData& data) {
   row("Frames, camera poses", fmt::format("{}, {}", h.frames, h.poses));
   row("Tag reads",
       fmt::format("{}; {} without a camera pose, {} rejected", h.reads, h.reads_without_pose, h.reads_rejected));
+  if (h.reader.connections > 0)
+    row("Reader", fmt::format("{} connections; clock {:.6f} s behind this box's, 1 sigma {:.2g} ms, drift {:.1f} ppm, "
+                              "{} steps; {} reports lost",
+                              h.reader.connections, h.reader.clock_offset_s, h.reader.clock_sigma_s * 1e3,
+                              h.reader.clock_drift * 1e6, h.reader.clock_steps, h.reader.reports_lost));
   row("Tags", fmt::format("{} seen, {} located", h.tags, h.tags_located));
   row("Faults", h.faults == 0 ? "none" : fmt::format("{}; the last: {}", h.faults, h.last_fault));
   return text + "</tbody></table></section>\n";

@@ -13,4 +13,7 @@ struct RadioRun {
 // Statistical or physical, as the scene says.
 [[nodiscard]] RadioRun make_radio_run(const Scene& scene, std::uint64_t seed);
 
+// What the reader reports of it, with the options' stress; times are `epoch` plus the scene's.
+[[nodiscard]] std::vector<TagRead> make_reads(const Scene& scene, const Options& options, DeviceTime epoch);
+
 }  // namespace rfmvo::simulate

@@ -16,6 +16,7 @@ class ChannelPlan {
   static constexpr std::size_t kChannels = 10;
   explicit ChannelPlan(std::uint64_t seed);
   [[nodiscard]] double frequency_hz(double t_s) const;
+  [[nodiscard]] const std::array<double, kChannels>& hops_hz() const { return hops_hz_; }  // in hop order
 
  private:
   std::array<double, kChannels> hops_hz_{};

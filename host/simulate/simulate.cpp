@@ -4,7 +4,6 @@
 #include "simulate/drift.hpp"
 #include "simulate/radio_run.hpp"
 #include "simulate/random.hpp"
-#include "simulate/reader.hpp"
 #include "simulate/scene.hpp"
 
 namespace rfmvo::simulate {
@@ -41,14 +40,6 @@ Truth truth_of(const Scene& scene) {
   return truth;
 }
 
-std::vector<TagRead> reads_of(const Scene& scene, const Options& options) {
-  const RadioRun radio = make_radio_run(scene, options.seed);
-  const ReaderHardware hardware = draw_hardware(scene.tags.size(), scene.calibration.antennas.size(), options.seed);
-  return report(scene, radio.singulations, radio.link, hardware, options.seed,
-                kEpoch + Duration::from_seconds(options.reader_delay_s),
-                {.flip_share = options.flip_share, .outlier_share = options.outlier_share});
-}
-
 // Open interval in the middle of the run without a frame; empty for a length of 0.
 struct FrameGap {
   double from_s, to_s;
@@ -80,7 +71,8 @@ DriftedPoses drift_around(const FrameGap& gap, const Truth& truth, const DriftCl
 std::vector<Event> small_events(const Scene& scene, const Options& options, const std::vector<CameraPose>& poses) {
   std::vector<Event> events;
   for (const CameraPose& pose : poses) events.emplace_back(pose);
-  for (const TagRead& read : reads_of(scene, options)) events.emplace_back(read);
+  const DeviceTime late_epoch = kEpoch + Duration::from_seconds(options.reader_delay_s);
+  for (const TagRead& read : make_reads(scene, options, late_epoch)) events.emplace_back(read);
   for (double t_s = scene.start_s() + kTick_s; t_s <= scene.end_s(); t_s += kTick_s) events.emplace_back(Tick{at(t_s)});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return time_of(a) < time_of(b); });
@@ -109,9 +101,36 @@ Status feed(const Scene& scene, bool with_frames, const FrameGap& gap, const std
   return Done{};
 }
 
+// The same events at other times.
+Sink shifted(const Sink& sink, Duration shift) {
+  return [sink, shift](const Event& event) {
+    Event later = event;
+    std::visit([shift](auto& e) { e.time = e.time + shift; }, later);
+    if (auto* read = std::get_if<TagRead>(&later)) read->reader_time = read->reader_time + shift;
+    return sink(later);
+  };
+}
+
+Result<Truth> simulate_from_epoch(const Options& options, const Scene& scene, const Sink& sink);
+
 }  // namespace
 
 Result<Truth> simulate(const Options& options, const Sink& sink) {
+  Result<Scene> made = make_scene(options);
+  if (!made.ok()) return made.error();
+  const Scene scene = std::move(made).value();
+  if (!options.start) return simulate_from_epoch(options, scene, sink);
+  const Duration shift = *options.start - at(scene.start_s());
+  Result<Truth> truth = simulate_from_epoch(options, scene, shifted(sink, shift));
+  if (!truth.ok()) return truth;
+  Truth later = std::move(truth).value();
+  for (TruePose& pose : later.trajectory) pose.time = pose.time + shift;
+  return later;
+}
+
+namespace {
+
+Result<Truth> simulate_from_epoch(const Options& options, const Scene& scene, const Sink& sink) {
   const std::optional<DriftClass> drift_class = find_drift_class(options.vo_class);
   if (!drift_class) {
     std::string known;
@@ -119,9 +138,6 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
     return Error{ErrorCode::kUnknownKey, "unknown odometry class '" + options.vo_class + "'; known: " + known,
                  "--vo-class"};
   }
-  Result<Scene> made = make_scene(options);
-  if (!made.ok()) return made.error();
-  const Scene scene = std::move(made).value();
   const bool with_frames = options.frames && scene.frame;
   if (options.frame_gap_s > kMaxGapShare * (scene.end_s() - scene.start_s()))
     return Error{ErrorCode::kOutOfRange, "is more than half of the run", "--frame-gap-s"};
@@ -146,5 +162,7 @@ Result<Truth> simulate(const Options& options, const Sink& sink) {
     return s.error();
   return truth;
 }
+
+}  // namespace
 
 }  // namespace rfmvo::simulate

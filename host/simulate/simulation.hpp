@@ -20,6 +20,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::string vo_class = "NOMINAL";  // drift of the CameraPose events: PERFECT | BEST | NOMINAL | DEGRADED | BAD
   bool frames = true;                // false: no Frame events (fast; for replay from poses)
+  std::optional<DeviceTime> start;   // device time of the first frame; nothing: 2026-01-01 plus the scene's own time
   double reader_delay_s = 0.0;       // read stamps are late by this much against the camera's
   // Stress. Each draws from a stream of its own: what it does not touch stays as it was.
   double outlier_share = 0.0;            // of the reads: a phase that tells nothing (uniform)

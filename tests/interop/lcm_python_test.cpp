@@ -20,6 +20,7 @@ constexpr const char* kReadLog = R"(import json, sys
 import lcm, rfmvo
 types = {'START': rfmvo.start_t, 'FRAME': rfmvo.frame_t, 'CAMERA_POSE': rfmvo.camera_pose_t,
          'TAG_READ': rfmvo.tag_read_t, 'TICK': rfmvo.tick_t, 'FAULT': rfmvo.fault_t, 'COMMAND': rfmvo.command_t,
+         'READER_STATUS': rfmvo.reader_status_t,
          'VO_POSE': rfmvo.camera_pose_t, 'TAG': rfmvo.tag_estimate_t, 'SCALE': rfmvo.scale_t,
          'METRIC_POSE': rfmvo.metric_pose_t, 'POSE': rfmvo.pose_t, 'TRAJECTORY': rfmvo.trajectory_t,
          'MAP_REVISION': rfmvo.map_revision_t, 'HEALTH': rfmvo.health_t}

@@ -84,7 +84,12 @@ TagRead sample_read(DeviceTime time) {
   read.frequency_hz = 920'625'000;
   read.rssi_cdbm = -5512;
   read.seen_count = 1;
+  read.doppler_hz_q4 = -273;
   return read;
+}
+
+ReaderStatus sample_reader_status(DeviceTime time) {
+  return {time, true, true, 820'454'400.25, -1.5e-5, 3e-4, 2, 3, std::uint64_t{1} << 33};
 }
 
 MetricPose sample_metric_pose(DeviceTime time) {
@@ -111,7 +116,7 @@ std::vector<Event> one_of_each_event() {
   frame.height_px = 6;
   frame.grey = std::make_shared<const std::vector<std::uint8_t>>(pixels);
   return {start,      frame, sample_pose(at(2)), sample_read(at(3)), Tick{at(4)}, Fault{at(5), "reader", "no answer"},
-          Command{at(6), "stop", ""}};
+          sample_reader_status(at(6)), Command{at(7), "stop", ""}};
 }
 
 std::vector<Estimate> one_of_each_estimate() {
@@ -140,6 +145,7 @@ std::vector<Estimate> one_of_each_estimate() {
   health.reads = std::uint64_t{1} << 40;
   health.tags = 7;
   health.last_fault = "camera: gone";
+  health.reader = sample_reader_status(time);
   return {sample_pose(time), tag,   ScaleEstimate{time, 1, true, 1.0 / 3.0, 0.01}, sample_metric_pose(time), trajectory,
           MapRevision{time, 5, "scale corrected"}, health};
 }

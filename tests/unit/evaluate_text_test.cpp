@@ -97,7 +97,7 @@ TEST(Export, TagsCsvHasOneRowPerTagAndNoNumbersForTagsWithoutPosition) {
   const auto columns = std::count(lines[0].begin(), lines[0].end(), ',');
   for (const auto& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns);
   EXPECT_EQ(lines[1].substr(0, 19), "30140000,CONVERGED,");
-  EXPECT_EQ(lines[3], "30140002,TOO_FEW_READS,,,,,,,,,,,40,0");
+  EXPECT_EQ(lines[3], "30140002,TOO_FEW_READS,,,,,,,,,,,40,0,");
 }
 
 class WholeFileTest : public ::testing::Test {
