@@ -124,16 +124,17 @@ TEST(Renderer, TheCrowdCoversUpToTwoFifths) {
   options.scene = "crowd";
   options.frames = false;
   const Scene scene = make_scene(options).value();
-  double most = 0.0, sum = 0.0;
-  for (const double t_s : scene.frame_times_s) {
-    if (std::fmod(t_s, 0.2) > 0.02) continue;
+  double most = 0.0, mean = 0.0;
+  constexpr std::size_t kEvery = 6;  // frames: five a second
+  for (std::size_t k = 0; k < scene.frame_times_s.size(); k += kEvery) {
+    const double t_s = scene.frame_times_s[k];
     const double share = occluded_share(*scene.environment, scene.calibration.camera, scene.T_S_C(t_s), t_s);
     most = std::max(most, share);
-    sum += share / (5.0 * scene.end_s());
+    mean += share * kEvery / static_cast<double>(scene.frame_times_s.size());
   }
   EXPECT_GT(most, 0.3);
   EXPECT_LT(most, 0.42);
-  EXPECT_GT(sum, 0.05);
+  EXPECT_GT(mean, 0.05);
 }
 
 TEST(Renderer, EveryDriveShowsSomethingAllTheWay) {
