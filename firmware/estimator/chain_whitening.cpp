@@ -20,7 +20,8 @@ using Lean = ChainConditioning::Read;
 
 // The last reads of the same chain, near enough to share the structured error; `usable` says which to skip.
 template <class Usable>
-Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, const StructuredShape& shape, const Usable& usable) {
+Lean neighbours_of(std::size_t i, const std::vector<JointRead>& reads, const StructuredShape& shape,
+                   const Usable& usable) {
   const double length_m = shape.long_share > 0.0 ? std::max(shape.length_m, kLongLength_m) : shape.length_m;
   Lean n;
   const int last_knot = reads[i].knot + 1;
@@ -182,8 +183,7 @@ void whiten(const std::vector<JointRead>& reads, const JointProblem& problem, co
             const TagState& tag, bool with_jacobian, WhitenedTag& out) {
   const Derivatives derivatives = with_jacobian ? Derivatives::kAll : Derivatives::kNone;
   predict_rows(reads, state, tag, derivatives, out);
-  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.structured),
-              derivatives, out);
+  whiten_rows(reads, problem, condition_chains(reads, tag.structured_sigma_rad, problem.structured), derivatives, out);
 }
 
 }  // namespace rfmvo

@@ -73,7 +73,8 @@ struct OtherSolutions {
   double elsewhere = 0.0;
 };
 
-OtherSolutions other_solutions(const JointSegment& segment, const Epc& epc, const TagEstimate& e, const PathPose& pose) {
+OtherSolutions other_solutions(const JointSegment& segment, const Epc& epc, const TagEstimate& e,
+                               const PathPose& pose) {
   constexpr double kElsewhere_m = 0.15;
   OtherSolutions others;
   const std::vector<double> weights = segment.weights();
@@ -110,7 +111,8 @@ std::optional<Eigen::Matrix3d> circle_through(const Eigen::Vector3d& p, const st
   return Eigen::Matrix3d(1.5 * radius * radius.transpose() + 0.5 * tangent * tangent.transpose());
 }
 
-Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Vector3d& p_W_X, double length_m) {
+Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, const Eigen::Vector3d& p_W_X,
+                     double length_m) {
   Accuracy a;
   std::vector<Eigen::Vector3d> antennas;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -143,8 +145,8 @@ bool ambiguous(const SegmentTag& tag, double elsewhere) {
   return (tag.modes.empty() ? 0.0 : 1.0 - tag.modes[0].weight) + elsewhere > kSecondModeMatters;
 }
 
-TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, bool undecided,
-                    bool line, const Eigen::Matrix3d& covariance_m2, DeviceTime now, const JointConfig& config) {
+TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, bool undecided, bool line,
+                    const Eigen::Matrix3d& covariance_m2, DeviceTime now, const JointConfig& config) {
   if (!segment.started() || !tag.placed) return tag.placed ? TagStatus::kNoScale : TagStatus::kTooFewReads;
   if (!segment.scale_observable()) return TagStatus::kNoScale;
   if (undecided) return line ? TagStatus::kCircle : TagStatus::kMirror;
@@ -188,14 +190,17 @@ TagEstimate describe(const JointSegment& segment, const Epc& epc, const SegmentT
   constexpr std::size_t kMaxHypotheses = 8;
   for (std::size_t i = 0; i < std::min(tag.modes.size(), kMaxHypotheses); ++i) {
     const TagMode& mode = tag.modes[i];
+    constexpr double kWorthTelling = 0.005;
     const bool first = i == 0;  // the first one is the published position, refined since
+    if (!first && mode.weight < kWorthTelling) break;
     e.hypotheses.push_back({first ? p : segment.to_W(mode.tag.p_W_X),
                             first ? e.covariance_m2 : Eigen::Matrix3d(mode.covariance.topLeftCorner<3, 3>()),
                             mode.weight});
   }
   if (!undecided) return e;
   // Who looks at the covariance alone must not take an undecided position for a good one.
-  const Eigen::Matrix3d spread = accuracy.circle.value_or(spread_of_modes(tag)), R_C_W = T_W_C.R.conjugate().toRotationMatrix();
+  const Eigen::Matrix3d spread = accuracy.circle.value_or(spread_of_modes(tag)),
+                        R_C_W = T_W_C.R.conjugate().toRotationMatrix();
   e.covariance_m2 += spread;
   e.covariance_C_m2 += R_C_W * spread * R_C_W.transpose();
   return e;
@@ -207,7 +212,8 @@ Trajectory describe_path(const JointSegment& segment, DeviceTime now) {
   t.segment = segment.id();
   t.map_revision = segment.revision();
   for (const PathPose& pose : segment.path().poses())
-    t.poses.push_back({pose.time, segment.id(), segment.revision(), segment.T_W_C(pose), segment.pose_covariance(pose)});
+    t.poses.push_back(
+        {pose.time, segment.id(), segment.revision(), segment.T_W_C(pose), segment.pose_covariance(pose)});
   return t;
 }
 
@@ -254,13 +260,16 @@ void JointEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& 
   // The best answer per tag: the segment with the smallest honest sigma.
   std::map<Epc, TagEstimate> best;
   const auto sigma = [](const TagEstimate& e) {
-    return e.status == TagStatus::kTooFewReads ? 1e9 : e.covariance_C_m2.trace() + (e.status == TagStatus::kNoScale ? 1e6 : 0.0);
+    return e.status == TagStatus::kTooFewReads
+               ? 1e9
+               : e.covariance_C_m2.trace() + (e.status == TagStatus::kNoScale ? 1e6 : 0.0);
   };
   std::uint32_t revision = 0;
   for (const JointSegment& s : segments) {
     revision += s.revision();
     for (const auto& [epc, tag] : s.tags()) {
-      const TagEstimate e = describe(s, epc, tag, now, impl_->calibration.camera_rotation_sigma_rad, impl_->config.joint);
+      const TagEstimate e =
+          describe(s, epc, tag, now, impl_->calibration.camera_rotation_sigma_rad, impl_->config.joint);
       const auto place = best.find(epc);
       if (place == best.end() || sigma(e) < sigma(place->second)) best[epc] = e;
     }
@@ -269,7 +278,8 @@ void JointEstimator::publish(DeviceTime now, bool final, std::vector<Estimate>& 
     if (s.started() && (final || &s == &segments.back())) out.emplace_back(describe_path(s, now));
   }
   for (auto& [epc, e] : best) out.emplace_back(std::move(e));
-  if (revision != impl_->last_revision) out.emplace_back(MapRevision{now, revision, final ? "final solution" : "new reads"});
+  if (revision != impl_->last_revision)
+    out.emplace_back(MapRevision{now, revision, final ? "final solution" : "new reads"});
   impl_->last_revision = revision;
 }
 

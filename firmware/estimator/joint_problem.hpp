@@ -72,11 +72,11 @@ struct JointProblem {
   // How much of each entry of `reads` counts; empty: all of it. A tag whose position is undecided has one entry
   // per mode, with the probability of the mode (expectation maximisation).
   std::vector<double> share;
-  std::vector<KnotInterval> intervals;        // knots - 1
+  std::vector<KnotInterval> intervals;  // knots - 1
   JointPriors priors;
   double reference_scale_m =
-      1.0;  // metres per unit of V for the widths of priors and correlations; fixed while solving
-  StructuredShape structured;         // of the phase error
+      1.0;                     // metres per unit of V for the widths of priors and correlations; fixed while solving
+  StructuredShape structured;  // of the phase error
   double flip_probability = 0.003;    // of a pi flip
   double outlier_probability = 0.01;  // of a phase that tells nothing
 };

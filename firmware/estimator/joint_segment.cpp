@@ -11,7 +11,7 @@
 namespace rfmvo {
 namespace {
 
-constexpr std::size_t kMaxReadsPerChain = 120;            // more are thinned: neighbours tell nearly the same
+constexpr std::size_t kMaxReadsPerChain = 120;  // more are thinned: neighbours tell nearly the same
 // A solution that calls this many reads garbled explains too little to be believed: at 30 % true outliers it was wrong
 // in one tag of eight that it claimed.
 constexpr double kMostOutliers = 0.15;

@@ -87,7 +87,7 @@ class JointSegment {
 
  private:
   static constexpr double kMaterialLogScale = 0.1;  // scales nearer than that compete, but leave the scale known
-  static constexpr std::size_t kMinReads = 8;  // of a tag that is located: four unknowns and some to judge by
+  static constexpr std::size_t kMinReads = 8;       // of a tag that is located: four unknowns and some to judge by
 
   [[nodiscard]] std::optional<int> port_index(std::uint8_t port) const;
   [[nodiscard]] JointProblem problem_for(const std::vector<Epc>& epcs, double reference_scale_m) const;
@@ -136,7 +136,7 @@ class JointSegment {
   double next_start_arc_V_ = 0.0;
   double evidence_ = 0.0;             // total_evidence() when rivals were last considered
   std::vector<JointSegment> rivals_;  // other solutions, nearly as likely
-  double evidence_margin_ = 0.0;  // ln likelihood ratio of the scale against the best other one
+  double evidence_margin_ = 0.0;      // ln likelihood ratio of the scale against the best other one
   StructuredShape structured_;
   Misreads misreads_;
   double drift_factor_ = 1.0;  // of the odometry against the configuration, as the reads show

@@ -38,8 +38,7 @@ void JointSegment::try_starts(std::vector<JointSegment>& solutions) const {
     JointSegment rival = *this;
     rival.adopt(c);
     rival.iterate(Depth::kLook);
-    if (near + far == 1 || rival.total_evidence() > solutions[0].evidence_ - kAsDeep)
-      rival.iterate(Depth::kFull);
+    if (near + far == 1 || rival.total_evidence() > solutions[0].evidence_ - kAsDeep) rival.iterate(Depth::kFull);
     rival.evidence_ = rival.total_evidence();
     solutions.push_back(std::move(rival));
   }
@@ -78,7 +77,8 @@ void JointSegment::consider_rivals() {
   for (JointSegment& s : solutions) {
     if (std::abs(s.shared_.log_scale - shared_.log_scale) > kMaterialLogScale) second = std::max(second, s.evidence_);
     const auto known = [&](const JointSegment& r) { return apart_m(r, s) < kSameSolution_m; };
-    if (s.evidence_ < evidence_ - kHopeless || known(*this) || std::any_of(rivals_.begin(), rivals_.end(), known)) continue;
+    if (s.evidence_ < evidence_ - kHopeless || known(*this) || std::any_of(rivals_.begin(), rivals_.end(), known))
+      continue;
     rivals_.push_back(std::move(s));
   }
   evidence_margin_ = evidence_ - second;

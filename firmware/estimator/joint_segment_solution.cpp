@@ -95,7 +95,8 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
       of_known.tags.push_back(state.tags[i]);
       ++k;
     }
-  if (shape) structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
+  if (shape)
+    structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
   estimate_structured_strength(known, strength, of_known);
   if (shape) {
     misreads_ = estimate_misreads(known, of_known, {config_.joint.flip_probability, config_.joint.outlier_probability});
@@ -105,8 +106,7 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
   if (shape) structured_ = estimate_correlation(known, of_known, config_.joint.correlation_length_m);
   problem.structured = structured_;
   double typical = 0.0;
-  for (const TagState& t : of_known.tags)
-    typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());
+  for (const TagState& t : of_known.tags) typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());
   for (auto& [epc, tag] : tags_) {
     const auto found = std::find_if(decided.begin(), decided.end(), [&](const Candidate& c) { return c.epc == epc; });
     const double sigma = found == decided.end()

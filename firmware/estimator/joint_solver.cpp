@@ -81,8 +81,7 @@ using Chains = std::vector<ChainConditioning>;  // per tag
 Chains chains_of(const JointProblem& problem, const JointState& state) {
   Chains chains;
   for (std::size_t t = 0; t < problem.reads.size(); ++t)
-    chains.push_back(
-        condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.structured));
+    chains.push_back(condition_chains(problem.reads[t], state.tags[t].structured_sigma_rad, problem.structured));
   return chains;
 }
 

@@ -50,8 +50,7 @@ Conditioning condition_on_correlated(std::size_t count, const Eigen::Matrix<doub
 
 Conditioning condition_on_neighbours(std::size_t count, const Eigen::Matrix<double, 4, 4>& distances_m,
                                      const Eigen::Vector4d& white_rad2, double structured_sigma_rad, double length_m) {
-  const Eigen::Matrix4d correlation =
-      distances_m.unaryExpr([&](double d) { return matern32(d, length_m); });
+  const Eigen::Matrix4d correlation = distances_m.unaryExpr([&](double d) { return matern32(d, length_m); });
   return condition_on_correlated(count, correlation, white_rad2, structured_sigma_rad);
 }
 

@@ -132,8 +132,8 @@ StructuredShape estimate_correlation(const JointProblem& problem, const JointSta
   WhitenedTag whitened;
   for (const double length_m : kLengths_m)
     for (const double long_share : kLongShares)
-      shapes.push_back({{length_m, problem.structured.fade_exponent, long_share},
-                        log_normal(length_m, usual_m, kSiteLogSigma)});
+      shapes.push_back(
+          {{length_m, problem.structured.fade_exponent, long_share}, log_normal(length_m, usual_m, kSiteLogSigma)});
   for (std::size_t t = 0; t < problem.reads.size(); ++t) {
     predict_rows(problem.reads[t], state, state.tags[t], Derivatives::kAll, whitened);
     for (auto& [shape, l] : shapes)

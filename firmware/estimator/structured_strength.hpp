@@ -8,9 +8,9 @@ namespace rfmvo {
 
 struct StrengthOptions {
   double floor_rad = 0.15;
-  double prior_rad = 0.4;           // typical strength,
-  double prior_log_sigma = 0.6;     // of the typical strength over sites,
-  double tag_log_sigma = 0.25;      // and of a tag's strength about its site's
+  double prior_rad = 0.4;        // typical strength,
+  double prior_log_sigma = 0.6;  // of the typical strength over sites,
+  double tag_log_sigma = 0.25;   // and of a tag's strength about its site's
 };
 
 // Writes structured_sigma_rad of every tag in state.

@@ -99,9 +99,9 @@ PossiblePlaces search_places(const std::vector<JointRead>& all, const JointState
 std::vector<SpectrumPeak> coherent_peaks(const std::vector<SpectrumRead>& reads, const BeamModel& beams) {
   constexpr double kFinest_m = 0.06, kWidest_m = 0.25;
   constexpr int kPeaks = 24;
-  return search_near_field(reads, {.cell_m = suitable_cell(reads, kFinest_m, kWidest_m),
-                                   .range_max_m = beams.range_max_m,
-                                   .max_peaks = kPeaks});
+  return search_near_field(
+      reads,
+      {.cell_m = suitable_cell(reads, kFinest_m, kWidest_m), .range_max_m = beams.range_max_m, .max_peaks = kPeaks});
 }
 
 // Images of the modes that the antennas' places cannot tell from them: mirrored in the plane that the antennas moved in
