@@ -28,7 +28,8 @@ Result<reader_sim::ReaderModel> model_of(const Arguments& arguments) {
   auto scene = simulate::make_scene(arguments.scene);
   if (!scene) return scene.error();
   reader_sim::ReaderModel model;
-  for (const double hz : simulate::ChannelPlan(arguments.scene.seed).hops_hz())
+  const simulate::ChannelPlan channels(arguments.scene.seed);
+  for (const double hz : channels.hops_hz())
     model.channels_khz.push_back(static_cast<std::uint32_t>(std::lround(hz / 1e3)));
   const Duration begin = Duration::from_seconds(scene.value().start_s());
   model.reads = simulate::make_reads(scene.value(), arguments.scene, DeviceTime{} - begin);
