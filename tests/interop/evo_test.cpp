@@ -14,6 +14,7 @@
 #include "evaluate/evaluation.hpp"
 #include "odometry/odometry_report.hpp"
 #include "support/evaluate_world.hpp"
+#include "support/sample_events.hpp"
 
 namespace rfmvo {
 namespace {
@@ -51,11 +52,9 @@ class EvoTest : public ::testing::Test {
     if (!fs::exists(venv_ / "bin/evo_ape")) {
       GTEST_SKIP() << "no evo in " << venv_.string() << " (cmake/install-packages.sh puts it there)";
     }
-    fs::remove_all(folder_);
     fs::create_directories(folder_);
     ASSERT_TRUE(write_whole_file(folder_ / "read_zip.py", kReadZip).ok());
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   // HOME: evo keeps its settings there. stdin closed: it asks nothing.
   [[nodiscard]] EvoNumbers ape(const std::string& flags) const { return run_evo("evo_ape", flags); }
@@ -75,7 +74,9 @@ class EvoTest : public ::testing::Test {
   }
 
   const fs::path venv_ = RFMVO_VENV;
-  const fs::path folder_ = fs::path(::testing::TempDir()) / "rfmvo_evo_test";
+  // One each: ctest runs tests side by side.
+  const testing::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_ / "evo";
 };
 
 constexpr double kRelative = 1e-6;
