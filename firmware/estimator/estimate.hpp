@@ -71,7 +71,7 @@ struct MetricPose {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // position (m), rotation (rad), in W
 };
 
-// The recovered path as the newest map revision has it; replaces all earlier ones of the segment.
+// The recovered path as the newest map revision has it; replaces what was said of the segment from its first pose on.
 struct Trajectory {
   DeviceTime time;
   std::uint32_t segment = 0;

@@ -16,9 +16,17 @@
 
 namespace rfmvo {
 
+// A window of the path is solved as one problem up to this travel, or this many poses (ten minutes at 30 frames/s).
+// From the half on, a second window fills beside it and takes over: what passes the antennas within half a window is
+// seen whole by one of them. Time and memory are those of two windows, however long the drive.
+struct Window {
+  double length_m = 40.0;
+  std::size_t poses = 18000;
+};
+
 class JointEstimator {
  public:
-  JointEstimator(const Config& config, const Calibration& calibration);
+  JointEstimator(const Config& config, const Calibration& calibration, const Window& window = {});
   ~JointEstimator();
 
   void on(const CameraPose& pose);

@@ -54,6 +54,7 @@ struct JointRead {
 struct KnotInterval {
   Eigen::Vector3d step_W = Eigen::Vector3d::Zero();  // unscaled displacement, axes of W
   double length_V = 0.0;                             // travel, units of V
+  bool gap = false;  // the odometry was lost here: nothing is known of the step but what the reads tell
 };
 
 struct JointPriors {

@@ -12,6 +12,7 @@ namespace rfmvo {
 namespace {
 
 constexpr std::size_t kMaxReadsPerChain = 120;  // more are thinned: neighbours tell nearly the same
+constexpr std::size_t kMaxStoredPerChain = 4 * kMaxReadsPerChain;
 // A solution that calls this many reads garbled explains too little to be believed: at 30 % true outliers it was wrong
 // in one tag of eight that it claimed.
 constexpr double kMostOutliers = 0.15;
@@ -32,7 +33,7 @@ double strong_rssi_db(const SegmentTag& tag) {
 }  // namespace
 
 JointSegment::JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0)
-    : config_(config), calibration_(calibration), id_(id), T_W_C0_(T_W_C0), path_(T_W_C0.R) {
+    : config_(config), calibration_(calibration), ids_{id}, anchor_{{Eigen::Quaterniond::Identity(), T_W_C0.t}}, path_(T_W_C0.R) {
   for (const AntennaCalibration& antenna : calibration.antennas)
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
   beams_.range_max_m = config.joint.tag_range_max_m;
@@ -73,7 +74,8 @@ void JointSegment::add(const SampledRead& sampled) {
   tag.state.structured_sigma_rad = tag.reads == 0 ? config_.joint.structured_sigma_rad : tag.state.structured_sigma_rad;
 
   SegmentTag::Read r;
-  r.read.geometry = path_.geometry(sampled.T_V_C, sampled.velocity_V, sampled.angular_velocity_C);
+  const auto piece = static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), sampled.segment) - ids_.begin());
+  r.read.geometry = path_.geometry(sampled.T_V_C, sampled.velocity_V, sampled.angular_velocity_C, piece);
   r.read.geometry.wavenumber_rad_m = 2.0 * kTwoPi * frequency_hz / kSpeedOfLight_m_s;
   r.read.geometry.frequency_term_rad_m = 2.0 * kTwoPi * (frequency_hz - reference_frequency_hz_) / kSpeedOfLight_m_s;
   r.read.phase_rad = read.phase.rad();
@@ -88,6 +90,12 @@ void JointSegment::add(const SampledRead& sampled) {
   std::vector<SegmentTag::Read>& chain = tag.chains[static_cast<std::size_t>(*port)];
   const auto later = [](double t, const SegmentTag::Read& other) { return t < other.time_s; };
   chain.insert(std::upper_bound(chain.begin(), chain.end(), r.time_s, later), r);
+  // Memory has an end, a standstill may have none: every other read goes.
+  if (chain.size() >= kMaxStoredPerChain) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < chain.size(); i += 2) chain[kept++] = chain[i];
+    chain.resize(kept);
+  }
   ++tag.reads;
   tag.last_read = read.time;
 }
@@ -183,31 +191,47 @@ bool JointSegment::scale_observable() const {
          log_scale_sigma() < config_.joint.scale_sigma_max;
 }
 
-double JointSegment::scale_m_per_unit() const { return std::exp(shared_.log_scale); }
+double JointSegment::scale_m_per_unit(std::size_t piece) const {
+  const PathPiece& p = path_.pieces().at(piece);
+  return std::exp(shared_.log_scale) * p.joint.ratio * (1.0 + knot_at(p.arc_V).log_scale_drift);
+}
 
-double JointSegment::log_scale_sigma() const {
+double JointSegment::log_scale_sigma(std::size_t piece) const {
   if (covariance_.shared.size() == 0) return 1e9;
-  double variance = covariance_.shared(SharedLayout::kLogScale, SharedLayout::kLogScale);
+  const auto start_of = [&](const JointSegment& s) { return s.path_.place(s.path_.pieces().at(piece).arc_V, s.knot_spacing_V_); };
+  Eigen::VectorXd J = Eigen::VectorXd::Zero(covariance_.layout.size());
+  J[SharedLayout::kLogScale] = 1.0;
+  const int knot = start_of(*this).knot;
+  constexpr int kDrift = 6;
+  if (knot > 0 && knot < covariance_.layout.knots) J[covariance_.layout.knot(knot) + kDrift] = 1.0;
+  double variance = J.dot(covariance_.shared * J);
   const std::vector<double> probability = weights();
+  const double scale = scale_m_per_unit(piece);
   for (std::size_t r = 0; r < rivals_.size(); ++r)
-    variance += probability[r + 1] * std::pow(rivals_[r].shared_.log_scale - shared_.log_scale, 2);
+    variance += probability[r + 1] * std::pow(std::log(rivals_[r].scale_m_per_unit(piece) / scale), 2);
   return std::sqrt(std::max(0.0, variance));
 }
 
-Rigid3 JointSegment::T_W_C(const PathPose& pose) const {
-  const KnotPlace place = path_.place(pose.arc_V, knot_spacing_V_);
+KnotState JointSegment::knot_at(double arc_V) const {
+  const KnotPlace place = path_.place(arc_V, knot_spacing_V_);
   const auto last = shared_.knots.size() - 1;
   const KnotState& a = shared_.knots[std::min(static_cast<std::size_t>(place.knot), last)];
   const KnotState& b = shared_.knots[std::min(static_cast<std::size_t>(place.knot) + 1, last)];
   const double f = place.fraction;
-  const Eigen::Vector3d d = (1.0 - f) * a.path_correction_W + f * b.path_correction_W;
-  const Eigen::Vector3d theta = (1.0 - f) * a.rotation_correction_W + f * b.rotation_correction_W;
-  return {(so3_exp(theta) * pose.R_W_C).normalized(), T_W_C0_.t + std::exp(shared_.log_scale) * pose.n_W + d};
+  return {(1.0 - f) * a.path_correction_W + f * b.path_correction_W,
+          (1.0 - f) * a.rotation_correction_W + f * b.rotation_correction_W,
+          (1.0 - f) * a.log_scale_drift + f * b.log_scale_drift};
 }
 
-Eigen::Vector3d JointSegment::antenna_W(const SegmentTag::Read& read) const {
+Rigid3 JointSegment::T_L_C(const PathPose& pose) const {
+  const KnotState knot = knot_at(pose.arc_V);
+  return {(so3_exp(knot.rotation_correction_W) * pose.R_W_C).normalized(),
+          std::exp(shared_.log_scale) * pose.n_W + knot.path_correction_W};
+}
+
+Eigen::Vector3d JointSegment::antenna_L(const SegmentTag::Read& read) const {
   const PathPose pose{{}, read.read.geometry.n_W, Eigen::Quaterniond(read.read.geometry.R_W_C), read.arc_V};
-  return T_W_C(pose) * shared_.ports[static_cast<std::size_t>(read.read.port)].lever_arm_C;
+  return T_L_C(pose) * shared_.ports[static_cast<std::size_t>(read.read.port)].lever_arm_C;
 }
 
 Eigen::MatrixXd JointSegment::pose_jacobian(const PathPose& pose) const {
@@ -225,10 +249,24 @@ Eigen::MatrixXd JointSegment::pose_jacobian(const PathPose& pose) const {
   return J;
 }
 
-Eigen::Matrix<double, 6, 6> JointSegment::pose_covariance(const PathPose& pose) const {
+Eigen::Matrix<double, 6, 6> JointSegment::pose_covariance_L(const PathPose& pose) const {
   if (covariance_.shared.size() == 0) return Eigen::Matrix<double, 6, 6>::Zero();
   const Eigen::MatrixXd J = pose_jacobian(pose);
   return J * covariance_.shared * J.transpose();
+}
+
+Eigen::Matrix<double, 6, 6> JointSegment::pose_covariance_W(const PathPose& pose) const {
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero(), J = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = anchor_.T_W_L.R.toRotationMatrix();
+  J.topRows<3>() = anchor_.jacobian_at(T_W_C(pose).t);
+  J.bottomRightCorner<3, 3>().setIdentity();
+  return turn * pose_covariance_L(pose) * turn.transpose() + J * anchor_.covariance * J.transpose();
+}
+
+Eigen::Matrix<double, 3, 6> Anchor::jacobian_at(const Eigen::Vector3d& p_W) const {
+  Eigen::Matrix<double, 3, 6> J;
+  J << Eigen::Matrix3d::Identity(), -skew(p_W - T_W_L.t);
+  return J;
 }
 
 }  // namespace rfmvo

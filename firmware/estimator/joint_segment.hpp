@@ -1,4 +1,4 @@
-// One odometry segment of the joint estimator: its reads, its path, its states and their solution.
+// One odometry segment of the joint estimator, or several that were joined: reads, path, states and their solution.
 #pragma once
 
 #include <map>
@@ -12,6 +12,7 @@
 #include "estimator/joint_start.hpp"
 #include "estimator/odometry_path.hpp"
 #include "estimator/sampling_synchronization.hpp"
+#include "estimator/segment_alignment.hpp"
 #include "estimator/structured_strength.hpp"
 #include "estimator/tag_modes.hpp"
 #include "rf/epc.hpp"
@@ -53,8 +54,19 @@ struct Candidate {
   double share = 1.0;
 };
 
+// Where a segment's own frame L lies: position (m) and rotation (rad) in W are off by errors of this covariance.
+struct Anchor {
+  Rigid3 T_W_L;
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+  // What that does to a point: it moves by dt + dtheta x (p_W - t).
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> jacobian_at(const Eigen::Vector3d& p_W) const;
+};
+
 class JointSegment {
  public:
+  enum class Depth { kLook, kAside, kFull };  // one round; two with noise and drift as they are; four with all
+
   JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0);
 
   void add(const CameraPose& pose);
@@ -63,20 +75,39 @@ class JointSegment {
   // A new solution from all reads so far. `thorough` looks for all modes of all tags again.
   void solve(bool thorough);
 
-  [[nodiscard]] std::uint32_t id() const { return id_; }
+  // This segment and a later one as one problem; nothing if the reads speak against it or do not say how they lie.
+  [[nodiscard]] std::optional<JointSegment> joined(const JointSegment& later, Depth depth) const;
+
+  // The same odometry from the next pose on; later it takes over with what this segment knows of scale and ports.
+  [[nodiscard]] JointSegment following() const;
+  void take_over(const JointSegment& before);
+  // A segment that begins with `first`, the odometry having been lost: where it lies is guessed, its anchor says how well.
+  [[nodiscard]] JointSegment after_loss(const CameraPose& first) const;
+
+  // Of the odometry, one for each piece of the path.
+  [[nodiscard]] const std::vector<std::uint32_t>& ids() const { return ids_; }
+  [[nodiscard]] std::uint32_t id_of(const PathPose& pose) const { return ids_[path_.piece_of(pose.arc_V)]; }
   [[nodiscard]] const std::map<Epc, SegmentTag>& tags() const { return tags_; }
   [[nodiscard]] const OdometryPath& path() const { return path_; }
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] bool scale_observable() const;
-  [[nodiscard]] double scale_m_per_unit() const;
-  [[nodiscard]] double log_scale_sigma() const;
+  // Of the odometry's unit at the start of a piece, m; and the sigma of its logarithm.
+  [[nodiscard]] double scale_m_per_unit(std::size_t piece = 0) const;
+  [[nodiscard]] double log_scale_sigma(std::size_t piece = 0) const;
+  [[nodiscard]] double length_m() const { return scale_m_per_unit() * path_.arc_V(); }
   [[nodiscard]] std::uint32_t revision() const { return revision_; }
   [[nodiscard]] std::uint64_t reads_rejected() const { return rejected_; }
 
-  [[nodiscard]] Rigid3 T_W_C(const PathPose& pose) const;  // with the newest corrections
-  [[nodiscard]] Eigen::Vector3d to_W(const Eigen::Vector3d& p) const { return p + T_W_C0_.t; }
-  [[nodiscard]] Eigen::Vector3d antenna_W(const SegmentTag::Read& read) const;
-  [[nodiscard]] Eigen::Matrix<double, 6, 6> pose_covariance(const PathPose& pose) const;
+  // All is solved in L: axes of W and the place of the first pose as they were believed when the segment began. Where L
+  // lies in W is another matter: segments before this one may still move, and their drift does not spoil what this
+  // one knows about its own tags.
+  [[nodiscard]] Rigid3 T_L_C(const PathPose& pose) const;  // with the newest corrections
+  [[nodiscard]] Eigen::Vector3d antenna_L(const SegmentTag::Read& read) const;
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> pose_covariance_L(const PathPose& pose) const;
+  [[nodiscard]] const Anchor& anchor() const { return anchor_; }
+  void set_anchor(const Anchor& anchor) { anchor_ = anchor; }
+  [[nodiscard]] Rigid3 T_W_C(const PathPose& pose) const { return anchor_.T_W_L * T_L_C(pose); }
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> pose_covariance_W(const PathPose& pose) const;
   // d (position, rotation) of the camera / d shared states, at a place of the path; 6 x shared.
   [[nodiscard]] Eigen::MatrixXd pose_jacobian(const PathPose& pose) const;
   [[nodiscard]] const JointCovariance& shared_covariance() const { return covariance_; }
@@ -98,10 +129,17 @@ class JointSegment {
   [[nodiscard]] JointState state_for(const std::vector<Candidate>& some) const;
   void keep(const std::vector<Candidate>& some, const JointState& state);
   void resize_knots();
+  [[nodiscard]] KnotState knot_at(double arc_V) const;
+  struct Expected {
+    Rigid3 T_L_C;
+    double position_sigma_m, rotation_sigma_rad;
+  };
+  [[nodiscard]] Expected expected_at(DeviceTime time) const;  // after the path's end
+  [[nodiscard]] std::vector<Rigid3> alignments_with(const JointSegment& later) const;
+  void append(const JointSegment& later, const Rigid3& T_first_second);
   [[nodiscard]] std::vector<StartCandidate> search_starts();
   void adopt(const StartCandidate& candidate);
   bool start();
-  enum class Depth { kLook, kAside, kFull };  // one round; two with noise and drift as they are; four with all
   void iterate(Depth depth);
   void consider_rivals();
   void try_starts(std::vector<JointSegment>& solutions) const;
@@ -124,8 +162,8 @@ class JointSegment {
 
   Config config_;
   Calibration calibration_;
-  std::uint32_t id_;
-  Rigid3 T_W_C0_;
+  std::vector<std::uint32_t> ids_;
+  Anchor anchor_;
   OdometryPath path_;
   BeamModel beams_;
   std::map<Epc, SegmentTag> tags_;

@@ -44,8 +44,13 @@ class Factor {
 struct IntervalSigma {
   double drift, turn, position_m;
 };
+// Where the odometry was lost. The pieces are laid end to end by the tags that both saw (segment_alignment), to a few
+// centimetres and per cent: this much room is nearly none of a prior.
+constexpr IntervalSigma kGap{0.2, 0.3, 0.5};
+
 // What the trapezium leaves of a random walk of density q over a length L has variance q^2 L^3 / 12.
 IntervalSigma interval_sigma(const JointProblem& problem, std::size_t k) {
+  if (problem.intervals[k].gap) return kGap;
   const JointPriors& priors = problem.priors;
   const double length_m = std::max(problem.reference_scale_m * problem.intervals[k].length_V, kMinInterval_m);
   const double walk = std::sqrt(length_m);

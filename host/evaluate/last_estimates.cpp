@@ -1,5 +1,6 @@
 #include "evaluate/last_estimates.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -14,7 +15,14 @@ struct Keeper {
   void operator()(const ScaleEstimate& e) const { last.scales.insert_or_assign(e.segment, e); }
   void operator()(const MetricPose&) const {}
   void operator()(const Trajectory& e) const {
-    if (!e.poses.empty()) last.trajectories.insert_or_assign(e.segment, e);
+    if (e.poses.empty()) return;
+    // A long drive is told in windows: one replaces what was said from its first pose on.
+    Trajectory& held = last.trajectories[e.segment];
+    const auto before = std::lower_bound(held.poses.begin(), held.poses.end(), e.poses.front().time,
+                                         [](const MetricPose& p, DeviceTime t) { return p.time < t; });
+    Trajectory whole = e;
+    whole.poses.insert(whole.poses.begin(), held.poses.begin(), before);
+    held = std::move(whole);
   }
   void operator()(const MapRevision&) const {}
   void operator()(const Health& e) const { last.health = e; }
