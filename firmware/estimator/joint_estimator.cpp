@@ -20,7 +20,7 @@ struct JointEstimator::Impl {
   double next_join_arc_V = 0.0;  // of the newest
   std::uint32_t revision = 0;    // of the map
   std::uint64_t solutions = 0;   // that it consists of
-  std::uint64_t rejected = 0;  // reads, in closed windows
+  std::uint64_t rejected = 0;    // reads, in closed windows
 
   [[nodiscard]] double fill(const JointSegment& s) const;
   void close(JointSegment& segment, DeviceTime now);

@@ -33,7 +33,11 @@ double strong_rssi_db(const SegmentTag& tag) {
 }  // namespace
 
 JointSegment::JointSegment(const Config& config, const Calibration& calibration, std::uint32_t id, const Rigid3& T_W_C0)
-    : config_(config), calibration_(calibration), ids_{id}, anchor_{{Eigen::Quaterniond::Identity(), T_W_C0.t}}, path_(T_W_C0.R) {
+    : config_(config),
+      calibration_(calibration),
+      ids_{id},
+      anchor_{{Eigen::Quaterniond::Identity(), T_W_C0.t}},
+      path_(T_W_C0.R) {
   for (const AntennaCalibration& antenna : calibration.antennas)
     beams_.boresight_C.push_back(antenna.boresight_C.normalized());
   beams_.range_max_m = config.joint.tag_range_max_m;
@@ -43,7 +47,7 @@ JointSegment::JointSegment(const Config& config, const Calibration& calibration,
 void JointSegment::forget_solution() {
   set_drift(1.0);
   structured_ = {.length_m = config_.joint.correlation_length_m};
-  misreads_ = {config_.joint.flip_probability, config_.joint.outlier_probability};
+  misreads_ = misreads_configured();
   shared_ = {};
   for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
   shared_.knots.resize(2);
@@ -198,7 +202,9 @@ double JointSegment::scale_m_per_unit(std::size_t piece) const {
 
 double JointSegment::log_scale_sigma(std::size_t piece) const {
   if (covariance_.shared.size() == 0) return 1e9;
-  const auto start_of = [&](const JointSegment& s) { return s.path_.place(s.path_.pieces().at(piece).arc_V, s.knot_spacing_V_); };
+  const auto start_of = [&](const JointSegment& s) {
+    return s.path_.place(s.path_.pieces().at(piece).arc_V, s.knot_spacing_V_);
+  };
   Eigen::VectorXd J = Eigen::VectorXd::Zero(covariance_.layout.size());
   J[SharedLayout::kLogScale] = 1.0;
   const int knot = start_of(*this).knot;

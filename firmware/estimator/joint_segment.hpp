@@ -81,7 +81,8 @@ class JointSegment {
   // The same odometry from the next pose on; later it takes over with what this segment knows of scale and ports.
   [[nodiscard]] JointSegment following() const;
   void take_over(const JointSegment& before);
-  // A segment that begins with `first`, the odometry having been lost: where it lies is guessed, its anchor says how well.
+  // A segment that begins with `first`, the odometry having been lost: where it lies is guessed, its anchor says how
+  // well.
   [[nodiscard]] JointSegment after_loss(const CameraPose& first) const;
 
   // Of the odometry, one for each piece of the path.
@@ -137,7 +138,10 @@ class JointSegment {
   [[nodiscard]] Expected expected_at(DeviceTime time) const;  // after the path's end
   [[nodiscard]] std::vector<Rigid3> alignments_with(const JointSegment& later) const;
   void append(const JointSegment& later, const Rigid3& T_first_second);
-  [[nodiscard]] std::vector<StartCandidate> search_starts();
+  [[nodiscard]] Misreads misreads_configured() const {
+    return {config_.joint.flip_probability, config_.joint.outlier_probability};
+  }
+  [[nodiscard]] std::vector<StartCandidate> search_starts(const Misreads& misreads);
   void adopt(const StartCandidate& candidate);
   bool start();
   void iterate(Depth depth);

@@ -1,5 +1,6 @@
 // JointSegment: what comes after it. The next window of the same odometry; or, the odometry having been lost, another
-// segment: tags have names, and those that both saw say how the pieces of the path lie. From then on all are one problem.
+// segment: tags have names, and those that both saw say how the pieces of the path lie. From then on all are one
+// problem.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,9 +35,8 @@ JointSegment::Expected JointSegment::expected_at(DeviceTime time) const {
   constexpr double kLookBack_s = 0.5, kAcceleration_m_s2 = 0.5, kTurn_rad_s = 0.3;
   const std::vector<PathPose>& poses = path_.poses();
   const PathPose& last = poses.back();
-  const auto recent = std::find_if(poses.begin(), poses.end(), [&](const PathPose& p) {
-    return (last.time - p.time).seconds() <= kLookBack_s;
-  });
+  const auto recent = std::find_if(poses.begin(), poses.end(),
+                                   [&](const PathPose& p) { return (last.time - p.time).seconds() <= kLookBack_s; });
   const double back_s = (last.time - recent->time).seconds(), ahead_s = (time - last.time).seconds();
   Rigid3 T = T_L_C(last);
   if (back_s > 0.0) T.t += (T.t - T_L_C(*recent).t) / back_s * ahead_s;
@@ -47,7 +47,8 @@ JointSegment JointSegment::after_loss(const CameraPose& first) const {
   constexpr double kUnknown_m = 100.0;
   const bool scaled = scale_observable();
   const Expected expected = expected_at(first.time);
-  JointSegment later(config_, calibration_, first.segment, anchor_.T_W_L * (scaled ? expected.T_L_C : T_L_C(path_.poses().back())));
+  JointSegment later(config_, calibration_, first.segment,
+                     anchor_.T_W_L * (scaled ? expected.T_L_C : T_L_C(path_.poses().back())));
   Anchor anchor = later.anchor_;
   anchor.covariance = pose_covariance_W(path_.poses().back());
   for (int i = 0; i < 3; ++i) {
@@ -148,8 +149,8 @@ void JointSegment::append(const JointSegment& later, const Rigid3& T_first_secon
   rivals_.clear();
 }
 
-// How the later one may lie. The tags are laid over each other from where the camera was expected, which is held to more
-// or less: mostly the camera did go on as it went, and tags seen at the very end of a segment have several places.
+// How the later one may lie. The tags are laid over each other from where the camera was expected, which is held to
+// more or less: mostly the camera did go on as it went, and tags seen at the very end of a segment have several places.
 std::vector<Rigid3> JointSegment::alignments_with(const JointSegment& later) const {
   constexpr std::array<double, 3> kTrust{0.1, 0.3, 1.0};
   constexpr std::array<double, 2> kTolerances_m{0.10, 0.25};  // a few sigmas of a tag in a map of its own

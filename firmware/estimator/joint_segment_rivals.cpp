@@ -29,7 +29,10 @@ void JointSegment::try_starts(std::vector<JointSegment>& solutions) const {
   constexpr double kAsDeep = 30.0;     // after a first look
   constexpr int kMaxRivals = 2;        // with about this scale, and as many with another
   JointSegment seeker = *this;
-  const std::vector<StartCandidate> starts = seeker.search_starts();
+  // A start that trusts reads which a first solution has found to be garbled is led astray by them.
+  const Misreads least = misreads_configured();
+  const std::vector<StartCandidate> starts =
+      seeker.search_starts({std::max(least.flips, misreads_.flips), std::max(least.outliers, misreads_.outliers)});
   int near = 0, far = 0;
   for (const StartCandidate& c : starts) {
     if (c.evidence < starts[0].evidence - kWorthATry) break;

@@ -99,7 +99,7 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
     structured_.fade_exponent = known.structured.fade_exponent = estimate_fade_exponent(known, of_known, strength);
   estimate_structured_strength(known, strength, of_known);
   if (shape) {
-    misreads_ = estimate_misreads(known, of_known, {config_.joint.flip_probability, config_.joint.outlier_probability});
+    misreads_ = estimate_misreads(known, of_known, misreads_configured());
     problem.flip_probability = misreads_.flips;
     problem.outlier_probability = misreads_.outliers;
   }

@@ -29,8 +29,9 @@ void JointSegment::estimate_electrical_lengths() {
 }
 
 // Nothing is left of a solution that may have been wrong, least of all how noisy the reads seemed to it.
-std::vector<StartCandidate> JointSegment::search_starts() {
+std::vector<StartCandidate> JointSegment::search_starts(const Misreads& misreads) {
   forget_solution();
+  misreads_ = misreads;
   estimate_electrical_lengths();
   std::vector<Epc> all;
   for (const auto& [epc, tag] : tags_) all.push_back(epc);
@@ -80,7 +81,7 @@ bool JointSegment::start() {
   for (const auto& [epc, tag] : tags_) tags_to_start_from += tag.reads >= kMinReads ? 1 : 0;
   if (path_.arc_V() <= next_start_arc_V_ || tags_to_start_from == 0) return false;
   next_start_arc_V_ = 1.5 * path_.arc_V();  // geometric waits: the cost of all tries stays that of a few
-  const std::vector<StartCandidate> found = search_starts();
+  const std::vector<StartCandidate> found = search_starts(misreads_configured());
   if (found.empty()) return false;
   evidence_margin_ = found[0].evidence;
   for (const StartCandidate& c : found)

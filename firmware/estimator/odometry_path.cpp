@@ -71,8 +71,8 @@ double OdometryPath::end_arc_V(std::size_t piece) const {
 }
 
 double OdometryPath::arc_at(DeviceTime time) const {
-  const auto after = std::lower_bound(poses_.begin(), poses_.end(), time,
-                                      [](const PathPose& p, DeviceTime t) { return p.time < t; });
+  const auto after =
+      std::lower_bound(poses_.begin(), poses_.end(), time, [](const PathPose& p, DeviceTime t) { return p.time < t; });
   if (after == poses_.begin()) return 0.0;
   if (after == poses_.end()) return arc_V();
   const PathPose& a = *std::prev(after);

@@ -5,12 +5,10 @@
 namespace rfmvo {
 namespace {
 
-constexpr std::size_t kMaxPoses = 128;    // about 4 s at 30 fps
+constexpr std::size_t kMaxPoses = 128;     // about 4 s at 30 fps
 constexpr std::size_t kMaxWaiting = 4096;  // about 4 s at the fastest reader's 1000 reads/s
 
-bool usable(const CameraPose& pose) {
-  return pose.status == VoStatus::kTracking || pose.status == VoStatus::kDegraded;
-}
+bool usable(const CameraPose& pose) { return pose.status == VoStatus::kTracking || pose.status == VoStatus::kDegraded; }
 
 SampledRead sample(const CameraPose& a, const CameraPose& b, const TagRead& read) {
   const double span_s = (b.time - a.time).seconds();
@@ -35,7 +33,7 @@ const std::vector<SampledRead>& SamplingSynchronization::on(const CameraPose& po
   // Poses of another segment, or from before, cannot bracket a read together with this one.
   if (!poses_.empty() && (pose.segment != poses_.back().segment || pose.time <= poses_.back().time)) poses_.clear();
   poses_.push_back(pose);
-  if (poses_.size() > kMaxPoses) poses_.pop_front();
+  if (poses_.size() > kMaxPoses) poses_.erase(poses_.begin());
   release();
   return ready_;
 }
@@ -47,7 +45,7 @@ const std::vector<SampledRead>& SamplingSynchronization::on(const TagRead& read)
                                       [](DeviceTime t, const TagRead& r) { return t < r.time; });
   waiting_.insert(place, read);
   if (waiting_.size() > kMaxWaiting) {
-    waiting_.pop_front();
+    waiting_.erase(waiting_.begin());
     ++reads_without_pose_;
   }
   release();
@@ -55,18 +53,17 @@ const std::vector<SampledRead>& SamplingSynchronization::on(const TagRead& read)
 }
 
 void SamplingSynchronization::release() {
-  while (!waiting_.empty() && !poses_.empty() && waiting_.front().time <= poses_.back().time) {
-    const TagRead& read = waiting_.front();
-    const auto after = std::lower_bound(poses_.begin(), poses_.end(), read.time,
+  auto read = waiting_.begin();
+  for (; read != waiting_.end() && !poses_.empty() && read->time <= poses_.back().time; ++read) {
+    const auto after = std::lower_bound(poses_.begin(), poses_.end(), read->time,
                                         [](const CameraPose& p, DeviceTime t) { return p.time < t; });
     const bool bracketed = after != poses_.begin() && after->time - std::prev(after)->time <= max_gap_;
-    if (bracketed) {
-      ready_.push_back(sample(*std::prev(after), *after, read));
-    } else {
+    if (bracketed)
+      ready_.push_back(sample(*std::prev(after), *after, *read));
+    else
       ++reads_without_pose_;
-    }
-    waiting_.pop_front();
   }
+  waiting_.erase(waiting_.begin(), read);
 }
 
 }  // namespace rfmvo

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -19,8 +18,8 @@ namespace rfmvo {
 struct SampledRead {
   TagRead read;
   std::uint32_t segment = 0;
-  UnscaledPose T_V_C;                                          // camera at the read's time
-  Eigen::Vector3d velocity_V = Eigen::Vector3d::Zero();        // units of V per second
+  UnscaledPose T_V_C;                                            // camera at the read's time
+  Eigen::Vector3d velocity_V = Eigen::Vector3d::Zero();          // units of V per second
   Eigen::Vector3d angular_velocity_C = Eigen::Vector3d::Zero();  // rad/s
 };
 
@@ -38,8 +37,9 @@ class SamplingSynchronization {
   void release();
 
   Duration max_gap_;
-  std::deque<CameraPose> poses_;   // the last few, time-ordered, of one segment
-  std::deque<TagRead> waiting_;    // reads newer than the newest pose
+  // Vectors, though they are emptied from the front: once they have their size, a read allocates nothing.
+  std::vector<CameraPose> poses_;  // the last few, time-ordered, of one segment
+  std::vector<TagRead> waiting_;   // reads newer than the newest pose
   std::vector<SampledRead> ready_;
   std::uint64_t reads_without_pose_ = 0;
 };

@@ -26,7 +26,7 @@ struct ExpectedStart {
 
 struct Alignment {
   Rigid3 T_first_second;
-  double tags = 0.0;       // that agree, in probability
+  double tags = 0.0;        // that agree, in probability
   double residual_m = 0.0;  // RMS over these
 };
 

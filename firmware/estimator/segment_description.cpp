@@ -129,6 +129,14 @@ Accuracy accuracy_of(const JointSegment& segment, const SegmentTag& tag, double 
   return a;
 }
 
+// The strength of the error comes from the tag's own residuals, so that the normalised error is Student's t, not a
+// normal one: with nu degrees of freedom its variance is nu / (nu - 2) times as large.
+double finite_sample(double independent_reads) {
+  constexpr double kUnknowns = 4.0, kFewest = 4.0;
+  const double nu = std::max(independent_reads - kUnknowns, kFewest);
+  return nu / (nu - 2.0);
+}
+
 // elsewhere: probability of other solutions that have the tag at another place.
 bool ambiguous(const SegmentTag& tag, double elsewhere) {
   constexpr double kSecondModeMatters = 0.02;
@@ -170,10 +178,11 @@ TagEstimate describe_tag(const JointSegment& segment, const Epc& epc, const Segm
   e.hdop = accuracy.hdop;
   e.bearing_sweep_rad = accuracy.bearing_sweep_rad;
   e.independent_reads = accuracy.independent_reads;
-  e.covariance_C_m2 = camera_relative_covariance(segment, tag, closest.pose) +
+  const double t = finite_sample(accuracy.independent_reads);
+  e.covariance_C_m2 = t * camera_relative_covariance(segment, tag, closest.pose) +
                       rotation_covariance(e.p_C_X_m, camera_rotation_sigma_rad) + others.spread_C;
   e.status = status_of(segment, tag, undecided, accuracy.circle.has_value(), e.covariance_C_m2, now, config);
-  Eigen::Matrix3d in_L = tag.covariance.topLeftCorner<3, 3>() + others.spread_L +
+  Eigen::Matrix3d in_L = t * tag.covariance.topLeftCorner<3, 3>() + others.spread_L +
                          rotation_covariance(p_L_X - T_L_C.t, camera_rotation_sigma_rad);
 
   const Anchor& anchor = segment.anchor();
@@ -193,7 +202,8 @@ TagEstimate describe_tag(const JointSegment& segment, const Epc& epc, const Segm
     const bool first = i == 0;  // the first one is the published position, refined since
     if (!first && mode.weight < kWorthTelling) break;
     e.hypotheses.push_back({first ? e.p_W_X_m : anchor.T_W_L * mode.tag.p_W_X,
-                            to_W(first ? in_L : Eigen::Matrix3d(mode.covariance.topLeftCorner<3, 3>())), mode.weight});
+                            to_W(first ? in_L : Eigen::Matrix3d(t * mode.covariance.topLeftCorner<3, 3>())),
+                            mode.weight});
   }
   if (undecided) {
     // Who looks at the covariance alone must not take an undecided position for a good one.
@@ -220,9 +230,8 @@ std::vector<Trajectory> describe_paths(const JointSegment& segment, DeviceTime n
   if (!segment.started()) return paths;
   for (const std::uint32_t id : segment.ids()) paths.push_back({now, id, segment.revision(), {}});
   for (const PathPose& pose : segment.path().poses())
-    paths[segment.path().piece_of(pose.arc_V)].poses.push_back({pose.time, segment.id_of(pose), segment.revision(),
-                                                                segment.T_W_C(pose),
-                                                                segment.pose_covariance_W(pose)});
+    paths[segment.path().piece_of(pose.arc_V)].poses.push_back(
+        {pose.time, segment.id_of(pose), segment.revision(), segment.T_W_C(pose), segment.pose_covariance_W(pose)});
   return paths;
 }
 

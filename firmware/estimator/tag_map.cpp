@@ -48,7 +48,8 @@ TagEstimate TagMap::best(const Epc& epc, const TagEstimate* open, DeviceTime now
     if (moved || says_more(*open, e)) e = *open;
     if (moved) e.status = TagStatus::kMoved;
     // Held where it was found after the move: the news is over.
-    else if (e.status == TagStatus::kMoved && sure(*open)) e.status = TagStatus::kConverged;
+    else if (e.status == TagStatus::kMoved && sure(*open))
+      e.status = TagStatus::kConverged;
   } else if (e.status == TagStatus::kConverged && (now - found->second.last_read).seconds() > stale_after_s_) {
     e.status = TagStatus::kStale;
   }
