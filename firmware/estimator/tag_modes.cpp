@@ -1,13 +1,13 @@
 #include "estimator/tag_modes.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/units.hpp"
+#include "estimator/principal_axes.hpp"
 #include "estimator/tag_climb.hpp"
 #include "rf/phase.hpp"
 
@@ -107,25 +107,17 @@ std::vector<SpectrumPeak> coherent_peaks(const std::vector<SpectrumRead>& reads,
 // Images of the modes that the antennas' places cannot tell from them: mirrored in the plane that the antennas moved in
 // and, where that is hardly more than a line, turned about it.
 std::vector<Eigen::Vector3d> twin_places(const std::vector<SpectrumRead>& reads, const std::vector<TagMode>& modes) {
-  constexpr double kLine_m = 0.08;  // a quarter wavelength: a spread that turns phases by less than pi at the ends
   constexpr int kTurns = 12;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const SpectrumRead& r : reads) centre += r.p_W_A.cast<double>() / static_cast<double>(reads.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const SpectrumRead& r : reads) {
-    const Eigen::Vector3d d = r.p_W_A.cast<double>() - centre;
-    spread += d * d.transpose() / static_cast<double>(reads.size());
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);  // rising
-  const bool line = std::sqrt(std::max(0.0, axes.eigenvalues()[1])) < kLine_m;
+  std::vector<Eigen::Vector3d> antennas;
+  for (const SpectrumRead& r : reads) antennas.push_back(r.p_W_A.cast<double>());
+  const PrincipalAxes shape = principal_axes(antennas);
   constexpr std::size_t kBest = 4;
   std::vector<Eigen::Vector3d> twins;
   for (std::size_t m = 0; m < std::min(kBest, modes.size()); ++m) {
-    const Eigen::Vector3d d = modes[m].tag.p_W_X - centre;
-    const Eigen::Vector3d normal = axes.eigenvectors().col(0);
-    twins.push_back(centre + d - 2.0 * d.dot(normal) * normal);
-    for (int k = 1; line && m == 0 && k < kTurns; ++k)
-      twins.push_back(centre + Eigen::AngleAxisd(kTwoPi * k / kTurns, axes.eigenvectors().col(2)) * d);
+    const Eigen::Vector3d d = modes[m].tag.p_W_X - shape.centre;
+    twins.push_back(shape.centre + d - 2.0 * d.dot(shape.normal()) * shape.normal());
+    for (int k = 1; shape.is_line() && m == 0 && k < kTurns; ++k)
+      twins.push_back(shape.centre + Eigen::AngleAxisd(kTwoPi * k / kTurns, shape.line()) * d);
   }
   return twins;
 }
