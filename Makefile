@@ -97,10 +97,12 @@ fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev
 	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ $(CCACHE) >/dev/null
 	@cmake --build build/fuzz -j $(JOBS)
+	@build/fuzz/write_seeds build/fuzz/seeds
 	@set -e; for target in llrp config journal; do \
 	  echo "$$target: $(FUZZ_SECONDS) s"; mkdir -p build/fuzz/corpus/$$target; \
+	  [ $$target = llrp ] && seeds='$(wildcard ../shared/data/llrp/*/)' || seeds=; \
 	  build/fuzz/$${target}_fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -rss_limit_mb=4096 -verbosity=0 \
-	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target $(wildcard ../shared/data/llrp/malformed); \
+	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target build/fuzz/seeds/$$target $$seeds; \
 	done
 
 sources = $(shell git ls-files '*.cpp' '*.hpp')
