@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -25,45 +25,38 @@ build/%/build.ninja: CMakePresets.json
 	@cmake --preset $* $(CCACHE)
 	@touch $@
 
-# A simulated aisle from raw events to a report.
+# A simulated aisle, live: a simulated reader on a TCP port and rendered frames at their own pace into rfmvod; then the
+# evaluation and a report.
 demo: build
-	@$(MAKE) --no-print-directory demo-files
-	@cat demo/evaluation.txt
-	@echo "report: $(CURDIR)/demo/report.html"
-
-# The same aisle, live: a simulated reader over TCP and rendered frames into rfmvod, then the report.
-demo-live: build
-	@$(MAKE) --no-print-directory demo-live-files
+	@$(MAKE) --no-print-directory demo/live/report.html
 	@cat demo/live/evaluation.txt
 	@echo "report: $(CURDIR)/demo/live/report.html"
 
-.PHONY: demo-live-files
-demo-live-files: demo/frames/times.txt
-	@host/live_demo.sh build/release aisle 1 demo/frames demo/live
-	@$(rfmvo) evaluate demo/live/result.lcmlog --truth demo/live/truth --json demo/live/evaluation.json \
-	  >demo/live/evaluation.txt
-	@$(rfmvo) report demo/live/result.lcmlog --truth demo/live/truth --out demo/live/report.html
+# The same aisle from a journal, as fast as it goes.
+demo-offline: build
+	@$(MAKE) --no-print-directory demo/offline/report.html
+	@cat demo/offline/evaluation.txt
+	@echo "report: $(CURDIR)/demo/offline/report.html"
 
 demo/frames/times.txt: $(rfmvo)
 	@mkdir -p demo/frames
 	$(rfmvo) simulate --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
 
-demo-files: demo/report.html
+demo/live/result.lcmlog: demo/frames/times.txt host/live_demo.sh build/release/firmware/rfmvod
+	host/live_demo.sh build/release aisle 1 demo/frames demo/live
 
-demo/run.lcmlog: $(rfmvo)
-	@mkdir -p demo
-	$(rfmvo) simulate --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth
+demo/live/report.html: demo/live/result.lcmlog
+	$(rfmvo) evaluate $< --truth demo/live/truth --json demo/live/evaluation.json >demo/live/evaluation.txt
+	$(rfmvo) report $< --truth demo/live/truth --out $@
 
-demo/result.lcmlog: demo/run.lcmlog $(rfmvo)
-	$(rfmvo) replay demo/run.lcmlog --out demo/result.lcmlog --json demo/replay.json
+demo/offline/result.lcmlog: demo/frames/times.txt
+	@mkdir -p demo/offline
+	$(rfmvo) replay demo/frames/run.lcmlog --out $@ --json demo/offline/replay.json
 
-demo/evaluation.txt: demo/result.lcmlog
-	$(rfmvo) evaluate demo/result.lcmlog --truth demo/truth --replay-json demo/replay.json \
-	  --json demo/evaluation.json >demo/evaluation.tmp
-	@mv demo/evaluation.tmp $@
-
-demo/report.html: demo/evaluation.txt
-	$(rfmvo) report demo/result.lcmlog --truth demo/truth --out demo/report.html
+demo/offline/report.html: demo/offline/result.lcmlog
+	$(rfmvo) evaluate $< --truth demo/frames/truth --replay-json demo/offline/replay.json \
+	  --json demo/offline/evaluation.json >demo/offline/evaluation.txt
+	$(rfmvo) report $< --truth demo/frames/truth --out $@
 
 # The paper's evaluation as a page; IMAGES=DIR: on real frames, too.
 reproduce: build
@@ -97,10 +90,12 @@ fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev
 	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ $(CCACHE) >/dev/null
 	@cmake --build build/fuzz -j $(JOBS)
+	@build/fuzz/write_seeds build/fuzz/seeds
 	@set -e; for target in llrp config journal; do \
 	  echo "$$target: $(FUZZ_SECONDS) s"; mkdir -p build/fuzz/corpus/$$target; \
+	  [ $$target = llrp ] && seeds='$(wildcard ../shared/data/llrp/*/)' || seeds=; \
 	  build/fuzz/$${target}_fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -rss_limit_mb=4096 -verbosity=0 \
-	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target $(wildcard ../shared/data/llrp/malformed); \
+	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target build/fuzz/seeds/$$target $$seeds; \
 	done
 
 sources = $(shell git ls-files '*.cpp' '*.hpp')

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <limits>
 #include <span>
 #include <string>
@@ -51,16 +50,27 @@ inline bool holds_array(std::span<const std::uint8_t> data, std::size_t count_of
   return count >= 0 && static_cast<std::size_t>(count) <= (data.size() - count_offset - 4) / element_size;
 }
 
-template <class Message>
-Status unpack(Message& message, std::span<const std::uint8_t> data, std::string_view channel) {
-  int used = -1;
-  if (data.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    try {  // a string length of 0 or below throws in the generated code
-      used = message.decode(data.data(), 0, static_cast<int>(data.size()));
-    } catch (const std::exception&) {
-      used = -1;
-    }
+// Consecutive strings of a message. The generated decoders compute with a length of 0 or below as if it were one.
+struct StringsAt {
+  std::size_t offset = 0;
+  int count = 0;
+};
+inline bool holds_strings(std::span<const std::uint8_t> data, StringsAt strings) {
+  for (; strings.count > 0; --strings.count) {
+    if (!holds_array(data, strings.offset, 1)) return false;
+    const std::int64_t length = peek_int32(data, strings.offset);  // with the final NUL
+    if (length < 1) return false;
+    strings.offset += 4 + static_cast<std::size_t>(length);
   }
+  return true;
+}
+
+// `strings`: of the message; its arrays are for the caller to look at.
+template <class Message>
+Status unpack(Message& message, std::span<const std::uint8_t> data, std::string_view channel, StringsAt strings = {}) {
+  int used = -1;
+  if (data.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max()) && holds_strings(data, strings))
+    used = message.decode(data.data(), 0, static_cast<int>(data.size()));
   if (used < 0 || static_cast<std::size_t>(used) != data.size())
     return malformed(std::string("not a whole rfmvo.") + Message::getTypeName() + " message of this version", channel);
   if (message.utime > kMaxUtime || message.utime < -kMaxUtime) return malformed("utime is out of range", channel);

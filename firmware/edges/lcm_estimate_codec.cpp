@@ -178,7 +178,7 @@ Result<Estimate> decode_tag(std::string_view channel, Bytes data) {
 }
 
 Result<Estimate> decode_scale(std::string_view channel, Bytes data) {
-  scale_t m;
+  scale_t m{};
   if (const Status s = unpack(m, data, channel); !s) return s.error();
   if (!fits<std::uint32_t>(m.segment)) return malformed("segment is out of range", channel);
   if (!finite({m.m_per_unit, m.log_sigma})) return malformed("a number is not finite", channel);
@@ -231,15 +231,16 @@ Result<Estimate> decode_trajectory(std::string_view channel, Bytes data) {
 
 Result<Estimate> decode_map_revision(std::string_view channel, Bytes data) {
   map_revision_t m;
-  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  if (const Status s = unpack(m, data, channel, {kHashBytes + 8 + 8, 1}); !s) return s.error();
   if (!fits<std::uint32_t>(m.revision)) return malformed("revision is out of range", channel);
   return Estimate(
       MapRevision{DeviceTime::from_us(m.utime), static_cast<std::uint32_t>(m.revision), std::move(m.reason)});
 }
 
 Result<Estimate> decode_health(std::string_view channel, Bytes data) {
+  constexpr std::size_t kLastFaultOffset = kHashBytes + 8 + 1 + 8 + 4 + 8 * 5 + 4 * 2 + 8;
   health_t m;
-  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  if (const Status s = unpack(m, data, channel, {kLastFaultOffset, 1}); !s) return s.error();
   if (m.vo_status < camera_pose_t::INITIALISING || m.vo_status > camera_pose_t::LOST)
     return malformed("unknown vo_status " + std::to_string(m.vo_status), channel);
   if (!fits<std::uint32_t>(m.segment) || m.inliers < 0 || m.frames < 0 || m.poses < 0 || m.reads < 0 ||

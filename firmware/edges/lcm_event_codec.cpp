@@ -97,7 +97,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 Result<Event> decode_start(std::string_view channel, Bytes data) {
   start_t m;
-  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  if (const Status s = unpack(m, data, channel, {kHashBytes + 8, 3}); !s) return s.error();
   if (m.config_toml.size() > kMaxTomlBytes || m.calibration_toml.size() > kMaxTomlBytes)
     return malformed("configuration text is too long", channel);
   auto config = parse_config(m.config_toml, std::string(channel) + " configuration");
@@ -188,7 +188,7 @@ Result<Event> decode_tick(std::string_view channel, Bytes data) {
 
 Result<Event> decode_fault(std::string_view channel, Bytes data) {
   fault_t m;
-  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  if (const Status s = unpack(m, data, channel, {kHashBytes + 8, 2}); !s) return s.error();
   if (m.source.size() > kMaxStringBytes || m.text.size() > kMaxStringBytes)
     return malformed("a text is too long", channel);
   return Event(Fault{DeviceTime::from_us(m.utime), std::move(m.source), std::move(m.text)});
@@ -196,7 +196,7 @@ Result<Event> decode_fault(std::string_view channel, Bytes data) {
 
 Result<Event> decode_command(std::string_view channel, Bytes data) {
   command_t m;
-  if (const Status s = unpack(m, data, channel); !s) return s.error();
+  if (const Status s = unpack(m, data, channel, {kHashBytes + 8, 2}); !s) return s.error();
   if (m.key.size() > kMaxStringBytes || m.value.size() > kMaxStringBytes)
     return malformed("a text is too long", channel);
   return Event(Command{DeviceTime::from_us(m.utime), std::move(m.key), std::move(m.value)});

@@ -11,12 +11,12 @@ namespace rfmvo {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::size_t kMaxBuckets = 120;     // two minutes: 200 us of jitter then leave 3 ppm of drift
-constexpr double kMinSpanForDrift_s = 20.0;  // before that, drift is below the jitter
-constexpr std::size_t kMinBucketsForSigma = 3;
-constexpr Duration kFirstSigma{5'000'000};  // one delay says little; a quiet network has some ms
-constexpr double kEarly_ns = 20e6;          // no delay is negative: earlier than this, the clock was set forward
-constexpr double kLate_ns = 50e6;           // later than this for kLateFor with no exception: it was set back
+constexpr std::size_t kMaxBuckets = 120;        // two minutes: 200 us of jitter then leave 3 ppm of drift
+constexpr double kMinSpanForDrift_s = 20.0;     // before that, drift is below the jitter
+constexpr std::size_t kMinBucketsForSigma = 3;  // and for a step
+constexpr Duration kFirstSigma{5'000'000};      // one delay says little; a quiet network has some ms
+constexpr double kEarly_ns = 20e6;              // no delay is negative: earlier than this, the clock was set forward
+constexpr double kLate_ns = 50e6;               // later than this for kLateFor with no exception: it was set back
 constexpr Duration kLateFor{2 * kNsPerSecond};
 constexpr int kLateCount = 5;
 constexpr double kTooLate_ns = 10e9;  // no report is on its way for longer than the watchdog lives
@@ -76,7 +76,12 @@ std::optional<Duration> ReaderClockFilter::observe(ReaderTime stamp, DeviceTime 
 std::optional<Duration> ReaderClockFilter::stepped(const Point& point, DeviceTime arrival) {
   const double late_ns = excess_ns(point);
   const bool suspect = std::exchange(suspect_, false);
-  if (late_ns < -kEarly_ns || late_ns > kTooLate_ns || (suspect && late_ns > kLate_ns)) return restart(point);
+  if (late_ns < -kEarly_ns || late_ns > kTooLate_ns || (suspect && late_ns > kLate_ns)) {
+    // As long as a few seconds are all that is known, all of them may have been held up: the edge was only guessed.
+    const bool guessed = buckets_.size() < kMinBucketsForSigma && std::abs(late_ns) < kTooLate_ns && !suspect;
+    const Duration step = restart(point);
+    return guessed ? std::nullopt : std::optional(step);
+  }
   if (late_ns <= kLate_ns) {
     late_.reset();
     return std::nullopt;

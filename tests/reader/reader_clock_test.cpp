@@ -112,6 +112,16 @@ TEST(ReaderClock, DoesNotTakeABurstOfDelayForAStep) {
   EXPECT_NEAR(world.error_s(filter, 40.0), 0.0, 0.5e-3);
 }
 
+TEST(ReaderClock, DoesNotTakeAHeldUpBeginningForAStep) {
+  World world(10e-6);
+  ReaderClockFilter filter;
+  world.mean_delay_s_ = 2.0;
+  EXPECT_TRUE(world.run(filter, 0.0, 0.2).empty());
+  world.mean_delay_s_ = 0.003;
+  EXPECT_TRUE(world.run(filter, 0.2, 10.0).empty()) << "the stamps only stopped being late";
+  EXPECT_NEAR(world.error_s(filter, 10.0), 0.0, 0.5e-3);
+}
+
 TEST(ReaderClock, DecidesByTheFirstStampAfterAReconnection) {
   World world(0.0);
   ReaderClockFilter filter;

@@ -1,11 +1,11 @@
-#include "edges/lcm_codec.hpp"
+#include <gmock/gmock.h>
 
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "edges/lcm_codec.hpp"
 #include "rfmvo/camera_pose_t.hpp"
 #include "rfmvo/tag_read_t.hpp"
 #include "support/sample_events.hpp"
@@ -71,7 +71,8 @@ TEST(LcmCodec, AMetricPoseAlsoGoesOutAsThePoseThatEveryRobotReads) {
 TEST(LcmCodec, ATruncatedOrExtendedMessageIsAnError) {
   std::vector<LcmMessage> messages;
   for (const Event& event : testing::one_of_each_event()) messages.push_back(encode(event, kPrefix));
-  for (const Estimate& estimate : testing::one_of_each_estimate()) messages.push_back(encode(estimate, kPrefix).front());
+  for (const Estimate& estimate : testing::one_of_each_estimate())
+    messages.push_back(encode(estimate, kPrefix).front());
   for (LcmMessage& message : messages) {
     const auto fails = [&](std::span<const std::uint8_t> data) {
       return is_event_channel(message.channel, kPrefix) ? !decode_event(message.channel, data, kPrefix).ok()
@@ -88,7 +89,8 @@ TEST(LcmCodec, DamagedBytesNeverCrashTheDecoder) {
   std::mt19937 random(1);
   std::vector<LcmMessage> messages;
   for (const Event& event : testing::one_of_each_event()) messages.push_back(encode(event, kPrefix));
-  for (const Estimate& estimate : testing::one_of_each_estimate()) messages.push_back(encode(estimate, kPrefix).front());
+  for (const Estimate& estimate : testing::one_of_each_estimate())
+    messages.push_back(encode(estimate, kPrefix).front());
   for (const LcmMessage& message : messages) {
     for (int trial = 0; trial < 300; ++trial) {
       LcmMessage damaged = message;
@@ -123,6 +125,41 @@ TEST(LcmCodec, AHugeOrNegativeLengthFieldIsAnErrorAndAllocatesNothing) {
     const auto event = decode_event("RFMVO_TAG_READ", bytes, kPrefix);
     ASSERT_FALSE(event.ok());
     EXPECT_EQ(event.error().text(), "RFMVO_TAG_READ: not a whole rfmvo.tag_read_t message");
+  }
+}
+
+// Where the length of `text` stands in the message; the text is there only once.
+std::size_t length_of(const LcmMessage& message, const std::string& text) {
+  const auto at = std::search(message.data.begin(), message.data.end(), text.begin(), text.end());
+  EXPECT_NE(at, message.data.end()) << message.channel;
+  return static_cast<std::size_t>(at - message.data.begin()) - 4;
+}
+
+TEST(LcmCodec, ATextOfAnImpossibleLengthIsAnError) {
+  Health health;
+  health.last_fault = "last fault";
+  const LcmMessage start = encode(Event(testing::sample_start()), kPrefix);
+  const LcmMessage fault = encode(Event(Fault{{}, "source", "what happened"}), kPrefix);
+  const LcmMessage command = encode(Event(Command{{}, "some key", "some value"}), kPrefix);
+  const LcmMessage revision = encode(Estimate(MapRevision{{}, 1, "reason"}), kPrefix).front();
+  const LcmMessage healthy = encode(Estimate(health), kPrefix).front();
+  const std::pair<LcmMessage, std::size_t> lengths[] = {{start, 16},                               // version
+                                                        {start, length_of(start, "[estimator]")},  // configuration
+                                                        {start, length_of(start, "[camera]\nm")},  // calibration
+                                                        {fault, length_of(fault, "source")},
+                                                        {fault, length_of(fault, "what happened")},
+                                                        {command, length_of(command, "some key")},
+                                                        {command, length_of(command, "some value")},
+                                                        {revision, length_of(revision, "reason")},
+                                                        {healthy, length_of(healthy, "last fault")}};
+  for (auto [message, at] : lengths) {
+    for (const std::uint32_t length : {0u, 0x80000000u, 0x80000001u, 0xffffffffu, 0x7fffffffu}) {
+      for (std::size_t i = 0; i < 4; ++i) message.data[at + i] = static_cast<std::uint8_t>(length >> (24 - 8 * i));
+      const std::string error = is_event_channel(message.channel, kPrefix)
+                                    ? decode_event(message.channel, message.data, kPrefix).error().text()
+                                    : decode_estimate(message.channel, message.data, kPrefix).error().text();
+      EXPECT_THAT(error, ::testing::HasSubstr("not a whole rfmvo.")) << message.channel << " " << at << " " << length;
+    }
   }
 }
 

@@ -20,7 +20,8 @@ ReaderLink::ReaderLink(const ReaderSettings& settings, DeviceClockFunction clock
       clock_(std::move(clock)),
       session_(settings, seed),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
-      wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+      wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
+      input_(kReadBytes) {
   RFMVO_ASSERT(epoll_.valid() && wake_.valid());
   epoll_event event{};
   event.events = EPOLLIN;
@@ -150,17 +151,17 @@ void ReaderLink::wait_for(Duration wait) {
   }
 }
 
+// One read takes all there is, unless the buffer is too small for it. What comes after it, epoll says again.
 void ReaderLink::read() {
-  std::vector<std::uint8_t> buffer(kReadBytes);
   while (channel_) {
-    const net::Io io = channel_->read(buffer);
-    if (io.bytes > 0) session_.on_bytes(clock_(), std::span(buffer).first(io.bytes));
+    const net::Io io = channel_->read(input_);
+    if (io.bytes > 0) session_.on_bytes(clock_(), std::span(input_).first(io.bytes));
     if (io.closed) {
       session_.on_closed(
           clock_(), io.error.empty() ? "the reader has closed the connection" : "the connection is lost: " + io.error);
       return close();
     }
-    if (session_.wish() != ReaderSession::Wish::kKeep || io.bytes == 0) break;
+    if (session_.wish() != ReaderSession::Wish::kKeep || io.bytes < input_.size()) break;
   }
   write();
 }

@@ -42,6 +42,7 @@ class ReaderLink : public Reader {
   std::vector<net::Address> addresses_;  // not tried yet
   net::Fd connecting_;                   // until it is decided
   std::unique_ptr<net::Channel> channel_;
+  std::vector<std::uint8_t> input_;   // scratch
   std::vector<std::uint8_t> output_;  // not sent yet
   std::uint32_t watched_ = 0;         // epoll events asked for
 };
