@@ -179,16 +179,4 @@ bool BundleSystem::hold(const Eigen::VectorXd& direction, double weight) {
   return llt_.info() == Eigen::Success;
 }
 
-Vector6d BundleSystem::pull(std::size_t p, const Eigen::Matrix<double, Eigen::Dynamic, 6>& through) const {
-  const Eigen::Vector3d own = H_inverse_[p] * b_point_[p];
-  Vector6d result = Vector6d::Zero();
-  for (std::size_t k = first_[p]; k < first_[p + 1]; ++k) {
-    const int s = slot_[static_cast<std::size_t>(problem_.observations[k].view)];
-    if (s < 0) continue;
-    result.noalias() += through.middleRows<6>(6 * s).transpose() * (b_observation_[k] - W_[k] * own);
-  }
-  if (lens_ > 0) result.noalias() += through.bottomRows<kLens>().transpose() * (b_lens_point_[p] - W_lens_[p] * own);
-  return result;
-}
-
 }  // namespace rfmvo

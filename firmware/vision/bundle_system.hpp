@@ -37,8 +37,10 @@ class BundleSystem {
 
   // Adds weight * direction direction^T to what reduce() left, and factors again.
   bool hold(const Eigen::VectorXd& direction, double weight);
-  // What this point adds to the right side of the reduced system, seen through the rows of `through` (size() x 6).
-  [[nodiscard]] Vector6d pull(std::size_t point, const Eigen::Matrix<double, Eigen::Dynamic, 6>& through) const;
+  // What this point adds to the right side of the reduced system, seen through the rows of `through`.
+  template <int kColumns>
+  [[nodiscard]] Eigen::Matrix<double, kColumns, 1> pull(
+      std::size_t point, const Eigen::Matrix<double, Eigen::Dynamic, kColumns>& through) const;
 
  private:
   using Matrix63d = Eigen::Matrix<double, 6, 3>;
@@ -77,5 +79,20 @@ class BundleSystem {
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::VectorXd b_, step_camera_;
 };
+
+template <int kColumns>
+Eigen::Matrix<double, kColumns, 1> BundleSystem::pull(
+    std::size_t p, const Eigen::Matrix<double, Eigen::Dynamic, kColumns>& through) const {
+  const Eigen::Vector3d own = H_inverse_[p] * b_point_[p];
+  Eigen::Matrix<double, kColumns, 1> result = Eigen::Matrix<double, kColumns, 1>::Zero();
+  for (std::size_t k = first_[p]; k < first_[p + 1]; ++k) {
+    const int s = slot_[static_cast<std::size_t>(problem_.observations[k].view)];
+    if (s < 0) continue;
+    result.noalias() += through.template middleRows<6>(6 * s).transpose() * (b_observation_[k] - W_[k] * own);
+  }
+  if (lens_ > 0)
+    result.noalias() += through.template bottomRows<kLens>().transpose() * (b_lens_point_[p] - W_lens_[p] * own);
+  return result;
+}
 
 }  // namespace rfmvo

@@ -80,6 +80,8 @@ LensVector Lens::expected_step() const {
   return step;
 }
 
+LensMatrix Lens::covariance() const { return kNoise_px * kNoise_px * information().inverse(); }
+
 bool Lens::contradicted(int i, const LensMatrix& information, const LensVector& pull) const {
   const double prior_sigma = kNoise_px / std::sqrt(prior_information_(i, i));
   if (!(information.determinant() > 0.0) || !(information(i, i) > 0.0)) return false;

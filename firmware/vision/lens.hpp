@@ -47,6 +47,9 @@ class Lens {
   [[nodiscard]] bool is_free() const { return free_; }
   // The next window should estimate it: always once it has moved; before, some are enough to notice that it should.
   [[nodiscard]] bool is_asked() const { return free_ && (shown_[0] || shown_[1] || windows_ % kAskEvery == 0); }
+  // The calibration was contradicted; covariance() then says what is left open.
+  [[nodiscard]] bool is_estimated() const { return shown_[0] || shown_[1]; }
+  [[nodiscard]] LensMatrix covariance() const;
   void skip() { ++windows_; }  // a window that was not asked
   // The last window moved the lens so far that a map made before does not fit it any more.
   [[nodiscard]] bool is_settling() const { return settling_; }

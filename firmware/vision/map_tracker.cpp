@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vision/feature_tracks.hpp"
+#include "vision/motion_drift.hpp"
 #include "vision/rematching.hpp"
 
 namespace rfmvo {
@@ -18,6 +19,7 @@ constexpr int kMinInliers = 12;            // fewer: no pose
 constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
 constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
 constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
+constexpr double kDriftEvery_s = 0.3, kDriftLatest_s = 0.6;  // how often it is measured; the latter even on key frames
 constexpr double kNearest = 0.1;           // of the median depth: nearer points are not predicted
 
 // What a key frame keeps for matching back: the images without their gradients, which are four times as large.
@@ -144,7 +146,24 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   if (keyframe) add_keyframe(time, pyramid);
   previous_ = pyramid;
   const double share = std::min(1.0, static_cast<double>(s.inliers) / static_cast<double>(kept));
-  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance, keyframe};
+  const double keyframe_share = spend_flow(flow);
+  update_drift(time);
+  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance, keyframe_share};
+}
+
+double MapTracker::spend_flow(double flow) {
+  const double share = std::max(0.0, std::min(flow, 1.0) - flow_);
+  flow_ = flow >= 1.0 ? 0.0 : std::max(flow_, flow);
+  return share;
+}
+
+void MapTracker::update_drift(DeviceTime time) {
+  if (map_.keyframes.back().time <= drift_time_) return;  // as measured
+  const double since_s = (time - drift_time_).seconds();
+  const bool busy = map_.keyframes.back().time == time;
+  if (drift_ && (since_s < kDriftEvery_s || (busy && since_s < kDriftLatest_s))) return;
+  if (auto drift = drift_per_keyframe(map_, lens_, options_.mapping)) drift_ = std::move(drift);
+  drift_time_ = time;
 }
 
 void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
