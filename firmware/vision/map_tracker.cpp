@@ -15,6 +15,12 @@ constexpr double kRematchFlow = 0.45;  // of that: old landmarks are looked for 
 constexpr double kKeyframeCommon = 0.7;    // VISION design: of the last key frame's tracks
 constexpr double kMotionHuber_px = 0.6;    // VISION design
 constexpr double kRescueMiss_px = 10.0;    // as far as a patch is looked for
+// The gate: what is this many sigmas off is another thing, even if it is only a pixel. With a fixed 2 px, people and
+// repeated labels got in where pictures are good (shelfdiag: 0.06 % instead of 0.02); handheld frames need them.
+constexpr double kGateSigmas = 6.0;
+constexpr double kTightestGate = 0.4;       // of the configured gate: below, the map's own errors would be outliers
+constexpr double kNoiseMemory = 0.9;        // of a frame's noise for the next
+constexpr double kRayleighMedian = 1.1774;  // sqrt(2 ln 2): of the length of two axes' errors, in sigmas
 constexpr int kMinInliers = 12;            // fewer: no pose
 constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
 constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
@@ -129,6 +135,7 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   s = locate_camera(s.T_C_V, time, followed);
   if (s.inliers == 0) return std::nullopt;
 
+  update_gate(s);
   update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);
   std::erase_if(tracks_, [](const Track& t) { return t.strikes >= kMaxStrikes; });
@@ -178,6 +185,15 @@ void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
   twist_ = twist;
   T_C_V_ = T_C_V;
   pose_time_ = time;
+}
+
+void MapTracker::update_gate(const MotionSolution& solution) {
+  std::vector<double> errors = solution.error_px;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  const double noise_px = std::min(*middle / kRayleighMedian, widest_gate_px_);
+  noise_px_ = kNoiseMemory * noise_px_ + (1.0 - kNoiseMemory) * noise_px;
+  options_.mapping.gate_px = std::clamp(kGateSigmas * noise_px_, kTightestGate * widest_gate_px_, widest_gate_px_);
 }
 
 void MapTracker::update_median_depth() {

@@ -61,11 +61,14 @@ class MapTracker {
   void add_keyframe(DeviceTime time, const Pyramid& pyramid);
   void fill_up(const Pyramid& pyramid);
   void update_median_depth();
+  void update_gate(const MotionSolution& solution);
   void update_drift(DeviceTime time);
   [[nodiscard]] double spend_flow(double flow);
   void update_motion(const ViewPose& T_C_V, DeviceTime time);
 
-  MapTrackerOptions options_;
+  MapTrackerOptions options_;  // the gate follows the noise
+  const double widest_gate_px_ = options_.mapping.gate_px;
+  double noise_px_ = widest_gate_px_;  // of a track, per axis
   Lens lens_;
   Map map_;
   std::vector<Track> tracks_;  // sorted by landmark; where they are in previous_

@@ -145,7 +145,7 @@ std::optional<Matrix6d> drift_per_keyframe(const Map& map, const Lens& lens, con
   if (span.from == newest) return std::nullopt;
   BundleProblem bundle = gather(map, lens, span);
   if (bundle.points_V.size() < kMinPoints) return std::nullopt;
-  bundle.lens.free = lens.is_estimated();
+  bundle.lens.free = !lens.is_certain();
   BundleSystem system(bundle, {options.focal_px, kBundleHuber_px, 1});
   const double noise_px2 = variance_px2(system, bundle);
   const LensMatrix lens_weight = noise_px2 * lens.covariance().inverse();

@@ -17,7 +17,7 @@ namespace rfmvo {
 // moves by itself, a warped picture). Each landmark pulls the motion its way; at the minimum the pulls balance, and
 // their scatter is the covariance (cluster-robust, Liang and Zeger 1986), whatever the errors of one landmark have in
 // common. Once by landmarks and once by regions; in every direction the larger counts. A lens whose
-// calibration was contradicted is one more that pulls, as far as it is not known by now; until then it is believed.
+// calibration the images have not confirmed is one more that pulls, as far as it is not known by now.
 //
 // No value: too few key frames or landmarks.
 [[nodiscard]] std::optional<Matrix6d> drift_per_keyframe(const Map& map, const Lens& lens,
