@@ -80,13 +80,23 @@ LensVector Lens::expected_step() const {
   return step;
 }
 
-bool Lens::contradicted(int i, const LensMatrix& information, const LensVector& pull) const {
+LensMatrix Lens::covariance() const {
+  LensMatrix known = prior_information_ + carried_information_;
+  for (int i = 0; i < 2; ++i) {
+    if (seen_[i] && !shown_[i]) known(i, i) += kHeld;
+  }
+  return kNoise_px * kNoise_px * known.inverse();
+}
+
+void Lens::judge(int i, const LensMatrix& information, const LensVector& pull) {
   const double prior_sigma = kNoise_px / std::sqrt(prior_information_(i, i));
-  if (!(information.determinant() > 0.0) || !(information(i, i) > 0.0)) return false;
+  if (!(information.determinant() > 0.0) || !(information(i, i) > 0.0)) return;
   const LensMatrix covariance = information.inverse();
   const double sigma = kNoise_px * std::sqrt(covariance(i, i));
   const double off = value_(i) + (covariance * pull)(i)-prior_(i);
-  return sigma < prior_sigma / kClear && std::abs(off) > kContradiction * sigma;
+  if (!(sigma < prior_sigma / kClear)) return;
+  seen_[i] = true;
+  shown_[i] = shown_[i] || std::abs(off) > kContradiction * sigma;
 }
 
 void Lens::learn(const LensVector& step, const LensMatrix& window_information, const LensVector& window_pull) {
@@ -96,7 +106,7 @@ void Lens::learn(const LensVector& step, const LensMatrix& window_information, c
   settling_ = std::abs(step(0)) > kSettled_k1 || std::abs(step(1)) > kSettled_s;
   for (int i = 0; i < 2; ++i) {
     const bool before = shown_[i];
-    shown_[i] = shown_[i] || contradicted(i, window_information, window_pull);
+    judge(i, window_information, window_pull);
     settling_ = settling_ || shown_[i] != before;
   }
   if (!shown_[0] && !shown_[1]) return;

@@ -47,6 +47,10 @@ class Lens {
   [[nodiscard]] bool is_free() const { return free_; }
   // The next window should estimate it: always once it has moved; before, some are enough to notice that it should.
   [[nodiscard]] bool is_asked() const { return free_ && (shown_[0] || shown_[1] || windows_ % kAskEvery == 0); }
+  // Known as well as it needs to be: until the images have confirmed or contradicted the calibration, it is not.
+  [[nodiscard]] bool is_certain() const { return !free_ || (seen_[0] && seen_[1] && !shown_[0] && !shown_[1]); }
+  // What is left open: of a confirmed calibration nothing.
+  [[nodiscard]] LensMatrix covariance() const;
   void skip() { ++windows_; }  // a window that was not asked
   // The last window moved the lens so far that a map made before does not fit it any more.
   [[nodiscard]] bool is_settling() const { return settling_; }
@@ -69,12 +73,13 @@ class Lens {
 
  private:
   static constexpr int kAskEvery = 3;
-  [[nodiscard]] bool contradicted(int i, const LensMatrix& information, const LensVector& pull) const;
+  void judge(int i, const LensMatrix& information, const LensVector& pull);
 
   CameraModel camera_;
   LensVector prior_, value_, carried_;
   LensMatrix prior_information_ = LensMatrix::Zero(), carried_information_ = LensMatrix::Zero();
-  bool shown_[2] = {false, false};
+  bool shown_[2] = {false, false};  // contradicted
+  bool seen_[2] = {false, false};   // clearly, by a window
   bool settling_ = false;
   int windows_ = 0;
   bool free_ = false;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vision/feature_tracks.hpp"
+#include "vision/motion_drift.hpp"
 #include "vision/rematching.hpp"
 
 namespace rfmvo {
@@ -14,10 +15,17 @@ constexpr double kRematchFlow = 0.45;  // of that: old landmarks are looked for 
 constexpr double kKeyframeCommon = 0.7;    // VISION design: of the last key frame's tracks
 constexpr double kMotionHuber_px = 0.6;    // VISION design
 constexpr double kRescueMiss_px = 10.0;    // as far as a patch is looked for
+// The gate: what is this many sigmas off is another thing, even if it is only a pixel. With a fixed 2 px, people and
+// repeated labels got in where pictures are good (shelfdiag: 0.06 % instead of 0.02); handheld frames need them.
+constexpr double kGateSigmas = 6.0;
+constexpr double kTightestGate = 0.4;       // of the configured gate: below, the map's own errors would be outliers
+constexpr double kNoiseMemory = 0.9;        // of a frame's noise for the next
+constexpr double kRayleighMedian = 1.1774;  // sqrt(2 ln 2): of the length of two axes' errors, in sigmas
 constexpr int kMinInliers = 12;            // fewer: no pose
 constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
 constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
 constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
+constexpr double kDriftEvery_s = 0.3, kDriftLatest_s = 0.6;  // how often it is measured; the latter even on key frames
 constexpr double kNearest = 0.1;           // of the median depth: nearer points are not predicted
 
 // What a key frame keeps for matching back: the images without their gradients, which are four times as large.
@@ -127,6 +135,7 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   s = locate_camera(s.T_C_V, time, followed);
   if (s.inliers == 0) return std::nullopt;
 
+  update_gate(s);
   update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);
   std::erase_if(tracks_, [](const Track& t) { return t.strikes >= kMaxStrikes; });
@@ -144,7 +153,24 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   if (keyframe) add_keyframe(time, pyramid);
   previous_ = pyramid;
   const double share = std::min(1.0, static_cast<double>(s.inliers) / static_cast<double>(kept));
-  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance, keyframe};
+  const double keyframe_share = spend_flow(flow);
+  update_drift(time);
+  return TrackedPose{T_C_V_, s.inliers, share, median_depth_, s.covariance, keyframe_share};
+}
+
+double MapTracker::spend_flow(double flow) {
+  const double share = std::max(0.0, std::min(flow, 1.0) - flow_);
+  flow_ = flow >= 1.0 ? 0.0 : std::max(flow_, flow);
+  return share;
+}
+
+void MapTracker::update_drift(DeviceTime time) {
+  if (map_.keyframes.back().time <= drift_time_) return;  // as measured
+  const double since_s = (time - drift_time_).seconds();
+  const bool busy = map_.keyframes.back().time == time;
+  if (drift_ && (since_s < kDriftEvery_s || (busy && since_s < kDriftLatest_s))) return;
+  if (auto drift = drift_per_keyframe(map_, lens_, options_.mapping)) drift_ = std::move(drift);
+  drift_time_ = time;
 }
 
 void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
@@ -159,6 +185,15 @@ void MapTracker::update_motion(const ViewPose& T_C_V, DeviceTime time) {
   twist_ = twist;
   T_C_V_ = T_C_V;
   pose_time_ = time;
+}
+
+void MapTracker::update_gate(const MotionSolution& solution) {
+  std::vector<double> errors = solution.error_px;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  const double noise_px = std::min(*middle / kRayleighMedian, widest_gate_px_);
+  noise_px_ = kNoiseMemory * noise_px_ + (1.0 - kNoiseMemory) * noise_px;
+  options_.mapping.gate_px = std::clamp(kGateSigmas * noise_px_, kTightestGate * widest_gate_px_, widest_gate_px_);
 }
 
 void MapTracker::update_median_depth() {

@@ -24,7 +24,8 @@ struct TrackedPose {
   double inlier_share = 0.0;               // of the located tracks that are kept
   double median_depth = 1.0;               // units of V
   Matrix6d covariance = Matrix6d::Zero();  // of this pose against the map; step of moved()
-  bool keyframe = false;                   // the map was extended from this pose
+  // How much of the way from one key frame to the next was made since the pose before.
+  double keyframe_share = 0.0;
 };
 
 class MapTracker {
@@ -36,6 +37,9 @@ class MapTracker {
 
   // The next frame. No value: the pose was not found; the frame is then as if it had never been.
   [[nodiscard]] std::optional<TrackedPose> on(DeviceTime time, const Pyramid& pyramid);
+
+  // drift_per_keyframe() of the map a few frames ago, if ever it was known.
+  [[nodiscard]] const std::optional<Matrix6d>& drift() const { return drift_; }
 
   [[nodiscard]] std::int64_t next_landmark() const { return next_landmark_; }
   [[nodiscard]] DeviceTime pose_time() const { return pose_time_; }
@@ -57,9 +61,14 @@ class MapTracker {
   void add_keyframe(DeviceTime time, const Pyramid& pyramid);
   void fill_up(const Pyramid& pyramid);
   void update_median_depth();
+  void update_gate(const MotionSolution& solution);
+  void update_drift(DeviceTime time);
+  [[nodiscard]] double spend_flow(double flow);
   void update_motion(const ViewPose& T_C_V, DeviceTime time);
 
-  MapTrackerOptions options_;
+  MapTrackerOptions options_;  // the gate follows the noise
+  const double widest_gate_px_ = options_.mapping.gate_px;
+  double noise_px_ = widest_gate_px_;  // of a track, per axis
   Lens lens_;
   Map map_;
   std::vector<Track> tracks_;  // sorted by landmark; where they are in previous_
@@ -72,6 +81,9 @@ class MapTracker {
   Twist twist_;  // of the newest pose
   double median_depth_ = 1.0;
   SettledPath settled_;
+  std::optional<Matrix6d> drift_;
+  DeviceTime drift_time_;
+  double flow_ = 0.0;                // the largest since the newest key frame
   bool rematched_ = false;           // since the newest key frame
   std::size_t keyframe_tracks_ = 0;  // when the newest key frame was made
 };

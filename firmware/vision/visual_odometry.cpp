@@ -1,5 +1,6 @@
 #include "vision/visual_odometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "vision/feature_tracks.hpp"
 #include "vision/initialiser.hpp"
 #include "vision/map_tracker.hpp"
+#include "vision/motion_drift.hpp"
 
 namespace rfmvo {
 namespace {
@@ -17,11 +19,8 @@ constexpr int kGoodInliers = 30;  // fewer: degraded
 constexpr double kGoodInlierShare = 0.6;
 constexpr double kGoodSigma = 0.01;  // of the position, over the median depth: above, degraded
 constexpr double kHold_s = 0.25;     // without a pose, then the map is given up ("lost within 0.3 s")
-// Of the pose's covariance against the map. The map is extended from key frames, each with its own error, of which
-// the next inherits all; between key frames poses only scatter about the same map. Together, summed over a second,
-// they are as large as the errors (README: nees_per_dof).
-constexpr double kKeyframeInflation = 7.0;
-constexpr double kScatterShare = 0.1;
+// Until the drift is known, of the pose's covariance against the map, for a key frame; later it was 2 to 10.
+constexpr double kFirstDrift = 7.0;
 constexpr std::size_t kMinStartTracks = 30;  // fewer after a loss: still lost, there is nothing to start with
 constexpr double kRefillShare = 0.7;         // of max_tracks, while starting
 constexpr double kCalibratedShare = 0.06;    // of k1_sigma, if the calibration states a distortion: it measured k1
@@ -62,6 +61,7 @@ struct VisualOdometry::Impl {
   CameraPose without_pose(DeviceTime time);
   void lose();
   void settle(bool segment_ends);
+  [[nodiscard]] Matrix6d motion_covariance(const TrackedPose& pose, double seconds) const;
 
   Lens lens;  // while there is a tracker, it knows better
   const MapTrackerOptions options;
@@ -78,6 +78,14 @@ struct VisualOdometry::Impl {
   bool last_had_pose = false;
   std::shared_ptr<const std::vector<std::uint8_t>> last_image;
 };
+
+// Both poses scatter about the map, once over whatever way lies between them, and the map itself drifts. The sum over
+// the motions of about a second is to be the covariance of the whole: each has its share of the scatter by time.
+Matrix6d VisualOdometry::Impl::motion_covariance(const TrackedPose& pose, double seconds) const {
+  const Matrix6d drift = tracker->drift().value_or(kFirstDrift * pose.covariance);
+  const double scatter_share = std::clamp(seconds / kDriftHorizon_s, 0.0, 1.0);
+  return scatter_share * (pose.covariance + previous_covariance) + pose.keyframe_share * drift;
+}
 
 void VisualOdometry::Impl::settle(bool segment_ends) {
   for (SettledPose& pose : tracker->take_settled(segment_ends)) {
@@ -156,8 +164,7 @@ CameraPose VisualOdometry::Impl::track(DeviceTime time, const Pyramid& pyramid) 
   pose.status = judge(*found);
   pose.inliers = found->inliers;
   pose.T_V_C = to_unscaled(found->T_C_V);
-  pose.motion_covariance = kScatterShare * (found->covariance + previous_covariance);
-  if (found->keyframe) pose.motion_covariance += kKeyframeInflation * found->covariance;
+  pose.motion_covariance = motion_covariance(*found, (time - newest->time).seconds());
   previous_covariance = found->covariance;
   settle(false);
   newest = pose;
