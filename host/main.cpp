@@ -11,6 +11,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   rfmvo::add_simulate_command(app, exit_code);
   rfmvo::add_replay_command(app, exit_code);
+  rfmvo::add_log_command(app, exit_code);
+  rfmvo::add_info_command(app, exit_code);
+  rfmvo::add_diff_command(app, exit_code);
   rfmvo::add_evaluate_command(app, exit_code);
   rfmvo::add_export_command(app, exit_code);
   rfmvo::add_report_command(app, exit_code);

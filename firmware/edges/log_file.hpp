@@ -18,6 +18,7 @@ namespace rfmvo {
 
 struct LogRecord {
   std::int64_t offset = 0;  // of the record in the file, bytes
+  std::int64_t number = 0;  // the event number: counts up by one, unless something was lost before it was recorded
   std::int64_t utime = 0;   // us
   std::string channel;
   std::vector<std::uint8_t> data;
@@ -59,7 +60,8 @@ class LogFileReader {
   [[nodiscard]] std::string where(std::int64_t offset) const;
 
  private:
-  LogFileReader(std::string path, std::FILE* file, std::int64_t size) : path_(std::move(path)), file_(file), size_(size) {}
+  LogFileReader(std::string path, std::FILE* file, std::int64_t size)
+      : path_(std::move(path)), file_(file), size_(size) {}
 
   std::string path_;
   std::FILE* file_;

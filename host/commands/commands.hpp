@@ -1,5 +1,5 @@
 // The subcommands of `rfmvo`. Each adds itself to the parser and, when chosen, runs and sets
-// exit_code: 0 done, 1 it failed (one line on stderr says why), 2 the command line is wrong.
+// exit_code: 0 done, 1 it failed (one line on stderr says why), 2 the command line is wrong, 3 (diff) they differ.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,5 +16,8 @@ void add_bound_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 void add_reader_sim_command(CLI::App& app, int& exit_code);
+void add_log_command(CLI::App& app, int& exit_code);
+void add_info_command(CLI::App& app, int& exit_code);
+void add_diff_command(CLI::App& app, int& exit_code);
 
 }  // namespace rfmvo

@@ -19,4 +19,10 @@ void ProgressLine::show(std::size_t done, std::size_t all) const {
   std::fflush(stderr);
 }
 
+void ProgressLine::say(const std::string& text) const {
+  if (!terminal_) return;
+  std::fprintf(stderr, "\r\033[K%s", text.c_str());
+  std::fflush(stderr);
+}
+
 }  // namespace rfmvo

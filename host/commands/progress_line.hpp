@@ -13,6 +13,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   void show(std::size_t done, std::size_t all) const;
+  void say(const std::string& text) const;  // in place of it
 
  private:
   std::string what_;
