@@ -15,14 +15,15 @@ namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 constexpr std::size_t kHeaderBytes = 28;
-constexpr std::size_t kMaxChannelBytes = 63;                     // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::size_t kMaxChannelBytes = 63;                   // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::int64_t kMaxDataBytes = std::int64_t{1} << 28;  // 256 MB; our own messages stay below 128 MB
 
 using Header = std::array<std::uint8_t, kHeaderBytes>;
 
 template <std::size_t Bytes>
 void put(Header& header, std::size_t offset, std::uint64_t value) {
-  for (std::size_t i = 0; i < Bytes; ++i) header[offset + i] = static_cast<std::uint8_t>(value >> (8 * (Bytes - 1 - i)));
+  for (std::size_t i = 0; i < Bytes; ++i)
+    header[offset + i] = static_cast<std::uint8_t>(value >> (8 * (Bytes - 1 - i)));
 }
 
 template <std::size_t Bytes>
@@ -30,6 +31,16 @@ std::uint64_t get(const Header& header, std::size_t offset) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < Bytes; ++i) value = value << 8 | header[offset + i];
   return value;
+}
+
+Header header_of(std::int64_t number, std::int64_t utime, std::size_t channel_bytes, std::size_t data_bytes) {
+  Header header{};
+  put<4>(header, 0, kSyncWord);
+  put<8>(header, 4, static_cast<std::uint64_t>(number));
+  put<8>(header, 12, static_cast<std::uint64_t>(utime));
+  put<4>(header, 20, channel_bytes);
+  put<4>(header, 24, data_bytes);
+  return header;
 }
 
 std::string temporary_of(const std::string& path) { return path + ".tmp"; }
@@ -49,9 +60,19 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
+void append_log_record(std::vector<std::uint8_t>& out, std::int64_t number, std::int64_t utime,
+                       std::string_view channel, std::span<const std::uint8_t> data) {
+  RFMVO_ASSERT(!channel.empty() && channel.size() <= kMaxChannelBytes);
+  const Header header = header_of(number, utime, channel.size(), data.size());
+  out.insert(out.end(), header.begin(), header.end());
+  out.insert(out.end(), channel.begin(), channel.end());
+  out.insert(out.end(), data.begin(), data.end());
+}
+
 Result<std::unique_ptr<LogFileWriter>> LogFileWriter::create(const std::string& path) {
   std::error_code ignored;
-  if (path.empty() || std::filesystem::is_directory(path, ignored)) return unwritable(path, "it is a folder, not a file");
+  if (path.empty() || std::filesystem::is_directory(path, ignored))
+    return unwritable(path, "it is a folder, not a file");
   const int fd = ::open(temporary_of(path).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) return unwritable(path, std::strerror(errno));
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
@@ -77,12 +98,7 @@ Status LogFileWriter::write(std::string_view channel, std::int64_t utime, std::s
   RFMVO_ASSERT(file_ != nullptr && !channel.empty());
   if (channel.size() > kMaxChannelBytes)
     return Error{ErrorCode::kOutOfRange, "channel name is longer than 63 bytes", std::string(channel)};
-  Header header{};
-  put<4>(header, 0, kSyncWord);
-  put<8>(header, 4, static_cast<std::uint64_t>(count_));
-  put<8>(header, 12, static_cast<std::uint64_t>(utime));
-  put<4>(header, 20, channel.size());
-  put<4>(header, 24, data.size());
+  const Header header = header_of(count_, utime, channel.size(), data.size());
   const bool written = std::fwrite(header.data(), 1, header.size(), file_) == header.size() &&
                        std::fwrite(channel.data(), 1, channel.size(), file_) == channel.size() &&
                        std::fwrite(data.data(), 1, data.size(), file_) == data.size();
@@ -109,7 +125,7 @@ Result<std::unique_ptr<LogFileReader>> LogFileReader::open(const std::string& pa
     return Error{missing ? ErrorCode::kNotFound : ErrorCode::kUnreadable,
                  missing ? "no such file" : std::string("cannot be read: ") + std::strerror(errno), path};
   }
-  struct stat info{};
+  struct stat info {};
   if (::fstat(::fileno(file), &info) != 0 || !S_ISREG(info.st_mode)) {
     (void)std::fclose(file);
     return Error{ErrorCode::kUnreadable, "not a regular file", path};
