@@ -248,7 +248,9 @@ TEST(CameraSource, MjpegIsJournalledAsItCameUnlessItIsCut) {
     EXPECT_EQ(bench.frames[0].grey->size(), cut ? 24u : 48u);
     EXPECT_NEAR(bench.frames[0].grey->front(), 99, 2);
     EXPECT_EQ(bench.frames[0].encoded != nullptr, !cut);
-    if (!cut) EXPECT_EQ(*bench.frames[0].encoded, jpeg);
+    if (!cut) {
+      EXPECT_EQ(*bench.frames[0].encoded, jpeg);
+    }
   }
 }
 
