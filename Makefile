@@ -91,13 +91,13 @@ test-arm64:
 bench: build
 	build/release/tests/rfmvo_benchmarks
 
-# What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
+# What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30
 fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev
 	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ $(CCACHE) >/dev/null
 	@cmake --build build/fuzz -j $(JOBS)
-	@set -e; for target in llrp config journal; do \
+	@set -e; for target in llrp config journal request; do \
 	  echo "$$target: $(FUZZ_SECONDS) s"; mkdir -p build/fuzz/corpus/$$target; \
 	  build/fuzz/$${target}_fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -rss_limit_mb=4096 -verbosity=0 \
 	    -artifact_prefix=build/fuzz/$$target- build/fuzz/corpus/$$target $(wildcard ../shared/data/llrp/malformed); \

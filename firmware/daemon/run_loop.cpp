@@ -4,20 +4,11 @@
 
 #include "config/config_table.hpp"
 #include "edges/box/machine.hpp"
+#include "edges/box/settings_file.hpp"
 #include "edges/sources.hpp"
 #include "edges/stop_signal.hpp"
-#include "edges/toml_parts.hpp"
 
 namespace rfmvo {
-namespace {
-
-std::string text_of(const ConfigValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  return std::visit([](const auto& v) { return toml_parts::text_of(v); }, value);
-}
-
-}  // namespace
-
 Result<std::vector<Command>> Reloading::look(DeviceTime now) {
   auto loaded = load_config(options_);
   if (!loaded) return loaded.error();
@@ -35,8 +26,14 @@ Result<std::vector<Command>> Reloading::look(DeviceTime now) {
     new_run_ = true;
     return std::vector<Command>();
   }
+  const std::lock_guard lock(mutex_);
   running_ = std::move(loaded).value();
   return commands;
+}
+
+Config Reloading::running() const {
+  const std::lock_guard lock(mutex_);
+  return running_;
 }
 
 // Source, journal and sink of the loop in one: it sees every event come, and when all that follows from it is out.
@@ -132,7 +129,7 @@ class RunLoop::Around : public EventSource, public EventSink, public EstimateSin
         spdlog::info("{} = {}", command.key, command.value);
         parts_.source.live->post(command);
       }
-      const CameraConfig& camera = parts_.reloading.running().camera;
+      const CameraConfig camera = parts_.reloading.running().camera;
       if (parts_.source.camera != nullptr) parts_.source.camera->adjust(camera.exposure_s, camera.gain);
     }
     parts_.notify.ready("running on " + parts_.config.camera.source);

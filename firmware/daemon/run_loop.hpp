@@ -1,6 +1,7 @@
 // One run: the loop of edges/event_io with everything around it that a box needs - systemd, health, reload.
 #pragma once
 
+#include <mutex>
 #include <optional>
 
 #include "daemon/open_source.hpp"
@@ -21,10 +22,11 @@ class Reloading {
   // changes nothing: the error.
   [[nodiscard]] Result<std::vector<Command>> look(DeviceTime now);
   [[nodiscard]] bool wants_new_run() const { return new_run_; }
-  [[nodiscard]] const Config& running() const { return running_; }
+  [[nodiscard]] Config running() const;  // from any thread
 
  private:
   const Options& options_;
+  mutable std::mutex mutex_;
   Config running_;
   std::atomic<bool> new_run_{false};
 };

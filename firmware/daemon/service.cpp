@@ -4,13 +4,16 @@
 
 #include <ctime>
 #include <filesystem>
+#include <utility>
 
 #include "config/config_table.hpp"
 #include "daemon/open_source.hpp"
 #include "daemon/run_loop.hpp"
 #include "daemon/shutdown_guard.hpp"
+#include "edges/box/config_port.hpp"
 #include "edges/box/self_test.hpp"
 #include "edges/box/service_notify.hpp"
+#include "edges/box/settings_file.hpp"
 #include "edges/journal.hpp"
 #include "edges/sources.hpp"
 #include "edges/stop_signal.hpp"
@@ -91,6 +94,38 @@ Status close_journal(JournalRecorder* journal, const std::string& path) {
   return closed;
 }
 
+// A setting that the command line holds fast cannot be changed.
+Result<Config> change_setting(const Options& options, const std::string& key, const std::string& value) {
+  for (const std::string& setting : options.settings)
+    if (setting.starts_with(key + "="))
+      return Error{ErrorCode::kUnsupported, "is set on the command line of rfmvod", key};
+  const auto written = read_config(options.config);
+  if (!written) return written.error();
+  auto changed = SettingsFile(options.settings_file).set(written.value(), key, value);
+  if (!changed) return changed.error();
+  request_reload();
+  return changed;
+}
+
+// The configuration's door on the bus; null: this bus has none.
+Result<std::unique_ptr<ConfigPort>> open_config_port(const Options& options, const Config& config,
+                                                     const Reloading& reloading, const DeviceClockFunction& clock) {
+  auto secret = random_bytes(Mac{}.size());
+  if (!secret) return secret.error();
+  std::optional<Key> key;
+  if (!config.daemon.key_file.empty()) {
+    auto read = read_key(config.daemon.key_file);
+    if (!read) spdlog::warn("{}; the configuration cannot be changed from afar", read.error().text());
+    if (read) key = std::move(read).value();
+  }
+  ConfigServer::Doors doors{
+      [&reloading] { return reloading.running(); },
+      [&options](const std::string& name, const std::string& value) { return change_setting(options, name, value); }};
+  return ConfigPort::open(config.lcm.url, config.lcm.prefix,
+                          std::make_unique<ConfigServer>(std::move(doors), std::move(key), std::move(secret).value()),
+                          clock);
+}
+
 struct RunEnd {
   bool reload = false;
 };
@@ -113,6 +148,10 @@ Result<RunEnd> run_once(const Options& options, const Config& config, const Serv
   JournalRecorder* const journal = recorder.value().get();
   LogWriter* const result_log = result.value().get();
 
+  auto port = opened.live != nullptr ? open_config_port(options, config, reloading, opened.clock)
+                                     : std::unique_ptr<ConfigPort>();
+  if (!port) return port.error();
+
   std::optional<ShutdownGuard> guard;
   if (opened.live != nullptr) guard.emplace(journal);
   RunLoop loop({config, calibration.value(), opened, *bus.value(), journal, result_log, reloading, notify});
@@ -130,9 +169,11 @@ Result<RunEnd> run_once(const Options& options, const Config& config, const Serv
 }  // namespace
 
 Result<Config> load_config(const Options& options) {
-  auto read = read_config(options.config);
-  if (!read) return read.error();
-  Config config = std::move(read).value();
+  const auto written = read_config(options.config);
+  if (!written) return written.error();
+  auto over = SettingsFile(options.settings_file).over(written.value());
+  if (!over) return over.error();
+  Config config = std::move(over).value();
   if (const Status s = apply(options.settings, config); !s) return s.error();
   if (!options.journal.empty()) config.journal.directory = options.journal;
   return config;
@@ -144,12 +185,24 @@ Status serve(const Options& options) {
   const ServiceNotify notify;
   const Check clock = check_clock(system_clock());
   if (!clock.ok) spdlog::warn("clock: {}", clock.text);
+  auto loaded = load_config(options);
+  if (!loaded) return loaded.error();
+  Config config = std::move(loaded).value();
+  std::optional<Config> proven;  // the last one that a run could begin with
   while (true) {
-    const auto config = load_config(options);
-    if (!config) return config.error();
-    const auto end = run_once(options, config.value(), notify);
-    if (!end) return end.error();
+    const auto end = run_once(options, config, notify);
+    if (!end && !(proven && !stop_requested())) return end.error();
+    if (!end) {
+      // A setting from afar must not put the box out of reach.
+      spdlog::error("{}; back to the configuration before", end.error().text());
+      config = *std::exchange(proven, std::nullopt);
+      continue;
+    }
     if (!end.value().reload || stop_requested()) break;
+    proven = config;
+    auto next = load_config(options);
+    if (!next) return next.error();
+    config = std::move(next).value();
     spdlog::info("a new run with the new configuration");
   }
   notify.stopping();

@@ -14,9 +14,11 @@ struct Options {
   std::string config;
   std::string journal;                // overrides journal.directory
   std::string result;                 // what was published, as a result log
-  std::vector<std::string> settings;  // "section.key=value", over the configuration
+  std::string settings_file;          // what is set at run time is kept here, over the configuration
+  std::vector<std::string> settings;  // "section.key=value", over both
 };
 
+// The configuration file, what was set at run time, the command line: the later ones win.
 [[nodiscard]] Result<Config> load_config(const Options& options);
 [[nodiscard]] Status serve(const Options& options);
 

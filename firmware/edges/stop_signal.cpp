@@ -1,17 +1,19 @@
 #include "edges/stop_signal.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace rfmvo {
 namespace {
 
 // Global, because a signal handler has nothing else to reach.
-volatile std::sig_atomic_t stop_flag = 0;
+std::atomic<bool> stop_flag{false};
 
-volatile std::sig_atomic_t reload_flag = 0;
+std::atomic<bool> reload_flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "or a signal handler may not touch it");
 
-void on_signal(int) { stop_flag = 1; }
-void on_reload(int) { reload_flag = 1; }
+void on_signal(int) { stop_flag = true; }
+void on_reload(int) { reload_flag = true; }
 
 }  // namespace
 
@@ -25,7 +27,7 @@ void catch_stop_signals() {
   (void)::signal(SIGPIPE, SIG_IGN);
 }
 
-bool stop_requested() { return stop_flag != 0; }
+bool stop_requested() { return stop_flag; }
 
 void catch_reload_signal() {
   struct sigaction action {};
@@ -33,10 +35,8 @@ void catch_reload_signal() {
   (void)::sigaction(SIGHUP, &action, nullptr);
 }
 
-bool take_reload_request() {
-  if (reload_flag == 0) return false;
-  reload_flag = 0;
-  return true;
-}
+bool take_reload_request() { return reload_flag.exchange(false); }
+
+void request_reload() { reload_flag = true; }
 
 }  // namespace rfmvo

@@ -11,5 +11,6 @@ void catch_stop_signals();
 // SIGHUP: true once after each. Only for programs that reload something.
 void catch_reload_signal();
 [[nodiscard]] bool take_reload_request();
+void request_reload();  // as if SIGHUP had come
 
 }  // namespace rfmvo

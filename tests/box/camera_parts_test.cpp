@@ -79,7 +79,8 @@ TEST(GreyOf, APictureThatIsTooShortIsAnErrorAtEveryLength) {
     const std::size_t needed = 4 * picture.image.stride_bytes + row;
     for (std::size_t size = 0; size <= needed + 1; ++size) {
       // On the heap and exactly so long, so that the sanitizers see a byte too many.
-      const std::vector<std::uint8_t> exact(picture.bytes.begin(), picture.bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      const std::vector<std::uint8_t> exact(picture.bytes.begin(),
+                                            picture.bytes.begin() + static_cast<std::ptrdiff_t>(size));
       picture.image.bytes = exact;
       EXPECT_EQ(grey_of(picture.image, {0, 0, 9, 5}).ok(), size >= needed) << size;
     }
@@ -91,9 +92,9 @@ TEST(GreyOf, APictureThatIsTooShortIsAnErrorAtEveryLength) {
 
 TEST(GreyOf, AWindowOutsideIsAnError) {
   const Picture picture(PixelFormat::kGrey, 9, 5, 0);
-  for (const ImageWindow& window : {ImageWindow{-1, 0, 3, 3}, ImageWindow{7, 0, 3, 3}, ImageWindow{0, 3, 3, 3},
-                                    ImageWindow{0, 0, 0, 3}, ImageWindow{0, 0, 10, 5},
-                                    ImageWindow{std::numeric_limits<int>::max(), 0, 2, 2}})
+  for (const ImageWindow& window :
+       {ImageWindow{-1, 0, 3, 3}, ImageWindow{7, 0, 3, 3}, ImageWindow{0, 3, 3, 3}, ImageWindow{0, 0, 0, 3},
+        ImageWindow{0, 0, 10, 5}, ImageWindow{std::numeric_limits<int>::max(), 0, 2, 2}})
     EXPECT_FALSE(grey_of(picture.image, window).ok());
 }
 

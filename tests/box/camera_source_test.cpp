@@ -56,7 +56,8 @@ class ScriptedCamera : public CameraDevice {
     image.width_px = image.stride_bytes = 8;
     image.height_px = 6;
     image.bytes = world_.bytes;
-    image.stamp = {world_.clock, StampInstant::kReadoutStart, world_.now.ns - kDeviceLessMonotonic - world_.picture_age_ns};
+    image.stamp = {world_.clock, StampInstant::kReadoutStart,
+                   world_.now.ns - kDeviceLessMonotonic - world_.picture_age_ns};
     image.sequence = step.sequence;
     image.exposure = world_.exposure;
     image.damaged = step.kind == Step::kDamaged;
@@ -84,9 +85,12 @@ struct Bench {
   explicit Bench(const Config& config = small_config()) : config_(config) {}
   void open() {
     source = std::make_unique<CameraSource>(
-        CameraSource::Parts{std::make_unique<ScriptedCamera>(world), [this] { return world.now; },
-                            [] { return ClockOffsets{ScriptedCamera::kDeviceLessMonotonic, ScriptedCamera::kDeviceLessMonotonic}; },
-                            [this](Duration pause) { world.now = world.now + pause; }, counters},
+        CameraSource::Parts{
+            std::make_unique<ScriptedCamera>(world), [this] { return world.now; },
+            [] {
+              return ClockOffsets{ScriptedCamera::kDeviceLessMonotonic, ScriptedCamera::kDeviceLessMonotonic};
+            },
+            [this](Duration pause) { world.now = world.now + pause; }, counters},
         config_, world.stop);
   }
   // To the end of the script.

@@ -152,7 +152,8 @@ TEST_F(Crash, EveryJournalOpensAndReplaysToWhatWasPublished) {
   }
   RecordProperty("crashes", crashes());
   std::printf(
-      "%d crashes, %zu events in journals, %zu messages equal; published but not in the journal: at most %.1f ms; newest "
+      "%d crashes, %zu events in journals, %zu messages equal; published but not in the journal: at most %.1f ms; "
+      "newest "
       "event at most %.1f ms before the end\n",
       crashes(), records, compared, 1e3 * longest_loss_s, 1e3 * longest_age_s);
   EXPECT_GT(compared, static_cast<std::size_t>(crashes()));

@@ -175,6 +175,31 @@ TEST_F(BoxDaemon, AWrongConfigurationIsAFaultAndChangesNothing) {
   EXPECT_TRUE(told);
 }
 
+TEST_F(BoxDaemon, ANewConfigurationThatNoRunCanBeginWithGivesWayToTheOldOne) {
+  auto daemon = start();
+  EXPECT_NE(systemd.next("READY=1"), "");
+  write_config("[reader]\naddress = \"127.0.0.1\"\nantennas = \"none\"\n");
+  daemon->signal(SIGHUP);
+  ASSERT_TRUE(daemon->says("back to the configuration before")) << daemon->log();
+  EXPECT_NE(systemd.next("RELOADING=1"), "");
+  EXPECT_NE(systemd.next("READY=1"), "") << "of the reload";
+  EXPECT_NE(systemd.next("READY=1"), "") << "of the run that goes on as before";
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->log();
+}
+
+TEST_F(BoxDaemon, SettingsLieOverTheConfigurationAndTheCommandLineOverBoth) {
+  write_file(folder / "settings.toml", "[camera]\nflip = \"both\"\ngain = 2\n");
+  const auto ran = testing::run_command(RFMVO_DAEMON " --print-config --config '" + (folder / "box.toml") +
+                                        "' --settings '" + (folder / "settings.toml") + "' --set camera.gain=3");
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  const auto printed = parse_config(ran.out, "printed");
+  ASSERT_TRUE(printed.ok()) << printed.error().text();
+  EXPECT_EQ(printed.value().camera.flip, "both");
+  EXPECT_EQ(printed.value().camera.gain, 3.0);
+  EXPECT_EQ(printed.value().camera.source, "v4l2:/dev/rfmvo-no-camera");
+}
+
 TEST_F(BoxDaemon, TheSelfTestSaysWhatIsWrongAndItsExitCodeToo) {
   const auto ran = testing::run_command(RFMVO_DAEMON " --self-test --config '" + (folder / "box.toml") + "'");
   EXPECT_EQ(ran.exit_code, 1);

@@ -74,23 +74,34 @@ class DriverNode : public V4l2Node {
     if (d_.gone) return ENODEV;
     if (const auto refused = d_.refuses.find(request); refused != d_.refuses.end()) return refused->second;
     switch (request) {
-      case VIDIOC_QUERYCAP: return query(*static_cast<v4l2_capability*>(argument));
-      case VIDIOC_ENUM_FMT: return enumerate(*static_cast<v4l2_fmtdesc*>(argument));
-      case VIDIOC_S_FMT: return set_format(*static_cast<v4l2_format*>(argument));
-      case VIDIOC_S_PARM: return set_rate(*static_cast<v4l2_streamparm*>(argument));
-      case VIDIOC_S_CTRL: return set_control(*static_cast<v4l2_control*>(argument));
-      case VIDIOC_G_CTRL: return get_control(*static_cast<v4l2_control*>(argument));
-      case VIDIOC_REQBUFS: return request_buffers(*static_cast<v4l2_requestbuffers*>(argument));
-      case VIDIOC_QUERYBUF: return query_buffer(*static_cast<v4l2_buffer*>(argument));
-      case VIDIOC_QBUF: return queue(*static_cast<v4l2_buffer*>(argument));
-      case VIDIOC_DQBUF: return dequeue(*static_cast<v4l2_buffer*>(argument));
+      case VIDIOC_QUERYCAP:
+        return query(*static_cast<v4l2_capability*>(argument));
+      case VIDIOC_ENUM_FMT:
+        return enumerate(*static_cast<v4l2_fmtdesc*>(argument));
+      case VIDIOC_S_FMT:
+        return set_format(*static_cast<v4l2_format*>(argument));
+      case VIDIOC_S_PARM:
+        return set_rate(*static_cast<v4l2_streamparm*>(argument));
+      case VIDIOC_S_CTRL:
+        return set_control(*static_cast<v4l2_control*>(argument));
+      case VIDIOC_G_CTRL:
+        return get_control(*static_cast<v4l2_control*>(argument));
+      case VIDIOC_REQBUFS:
+        return request_buffers(*static_cast<v4l2_requestbuffers*>(argument));
+      case VIDIOC_QUERYBUF:
+        return query_buffer(*static_cast<v4l2_buffer*>(argument));
+      case VIDIOC_QBUF:
+        return queue(*static_cast<v4l2_buffer*>(argument));
+      case VIDIOC_DQBUF:
+        return dequeue(*static_cast<v4l2_buffer*>(argument));
       case VIDIOC_STREAMON:
         d_.streaming = true;
         return 0;
       case VIDIOC_STREAMOFF:
         d_.streaming = false;
         return 0;
-      default: return ENOTTY;
+      default:
+        return ENOTTY;
     }
   }
   [[nodiscard]] const std::uint8_t* map(std::size_t bytes, std::int64_t offset) override {
@@ -142,7 +153,8 @@ class DriverNode : public V4l2Node {
   }
   int request_buffers(v4l2_requestbuffers& out) {
     out.count = std::min(out.count, d_.buffers);
-    d_.memory.assign(out.count, std::vector<std::uint8_t>(std::size_t{d_.format.bytesperline} * d_.format.height * 3 / 2));
+    d_.memory.assign(out.count,
+                     std::vector<std::uint8_t>(std::size_t{d_.format.bytesperline} * d_.format.height * 3 / 2));
     return 0;
   }
   int query_buffer(v4l2_buffer& out) {
