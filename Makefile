@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -90,6 +90,26 @@ test-arm64:
 
 bench: build
 	build/release/tests/rfmvo_benchmarks
+
+# Debian packages of the box and of the tools, in build/deb; lintian finds no errors.
+deb: build
+	@cmake/install-packages.sh dpkg-dev lintian
+	@rm -rf build/deb && cpack --config build/release/CPackConfig.cmake -B build/deb >/dev/null && rm -rf build/deb/_CPack_Packages
+	@lintian --fail-on error build/deb/*.deb
+	@ls -l build/deb/*.deb
+
+# kill -9 at random moments under load, so many times.
+CRASHES ?= 200
+crash-test: build
+	RFMVO_CRASHES=$(CRASHES) build/release/tests/rfmvo_box_tests --gtest_filter='Crash.*'
+
+# rfmvod on a real V4L2 driver, in a guest machine with Debian's kernel.
+test-camera: packages
+	@cmake/install-packages.sh qemu-system-x86 busybox-static kmod cpio v4l-utils
+	@$(MAKE) --no-print-directory build/release/build.ninja
+	@cmake --build build/release -j $(JOBS) --target rfmvod
+	@rm -rf build/camera && mkdir -p build/camera && cp build/release/firmware/rfmvod build/camera/
+	@tests/boot/guest.sh build/camera tests/boot/camera_guest.sh
 
 # What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30

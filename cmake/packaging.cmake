@@ -5,6 +5,7 @@ set(CPACK_PACKAGE_VENDOR rfmvo)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_CMAKE_GENERATOR Ninja)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL firmware host)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -22,15 +23,13 @@ else()
 endif()
 set(CPACK_DEBIAN_FIRMWARE_PACKAGE_NAME rfmvo-firmware)
 set(CPACK_DEBIAN_FIRMWARE_PACKAGE_RECOMMENDS chrony)
-set(CPACK_COMPONENT_FIRMWARE_DESCRIPTION "locates RFID tags in 3D with one camera (daemon)
- rfmvod fuses the phases of an LLRP UHF RFID reader with monocular visual
- odometry and publishes, over LCM, where every tag is and the metric scale of
- its camera's path. With its systemd unit, user, udev and sysctl settings.")
+set(CPACK_COMPONENT_FIRMWARE_DESCRIPTION "rfmvod fuses the phases of an LLRP UHF RFID reader with monocular visual
+odometry and publishes, over LCM, where every tag is and the metric scale of
+its camera's path. With its systemd unit, user, udev and sysctl settings.")
 set(CPACK_DEBIAN_HOST_PACKAGE_NAME rfmvo-host)
 set(CPACK_DEBIAN_HOST_PACKAGE_RECOMMENDS gnuplot-nox)
-set(CPACK_COMPONENT_HOST_DESCRIPTION "locates RFID tags in 3D with one camera (tools)
- rfmvo replays, evaluates, simulates and reports journals of rfmvod, and is a
- simulated RFID reader where there is none.")
+set(CPACK_COMPONENT_HOST_DESCRIPTION "rfmvo replays, evaluates, simulates and reports journals of rfmvod, and is a
+simulated RFID reader where there is none.")
 set(CPACK_DEBIAN_FIRMWARE_PACKAGE_CONTROL_EXTRA
     ${PROJECT_SOURCE_DIR}/systemd/debian/postinst ${PROJECT_SOURCE_DIR}/systemd/debian/prerm
     ${PROJECT_SOURCE_DIR}/systemd/debian/postrm ${PROJECT_SOURCE_DIR}/systemd/debian/conffiles)
