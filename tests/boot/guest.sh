@@ -14,7 +14,7 @@ mkdir -p "$cache"
 fetch_kernel() {
   local package
   package=$(apt-cache depends linux-image-amd64 | sed -n 's/.*Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -1)
-  (cd "$cache" && apt-get download "$package" >/dev/null && rm -rf kernel && dpkg-deb -x "$package"_*.deb kernel && rm ./*.deb)
+  (cd "$cache" && apt-get -o APT::Sandbox::User=root download "$package" >/dev/null && rm -rf kernel && dpkg-deb -x "$package"_*.deb kernel && rm ./*.deb)
   depmod -b "$cache/kernel" "$(ls "$cache/kernel/lib/modules")"
 }
 
