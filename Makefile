@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -84,14 +84,34 @@ test-arm64:
 bench: build
 	build/release/tests/rfmvo_benchmarks
 
-# What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
+# Debian packages of the box and of the tools, in build/deb; lintian finds no errors.
+deb: build
+	@cmake/install-packages.sh dpkg-dev lintian
+	@rm -rf build/deb && cpack --config build/release/CPackConfig.cmake -B build/deb >/dev/null && rm -rf build/deb/_CPack_Packages
+	@lintian --fail-on error build/deb/*.deb
+	@ls -l build/deb/*.deb
+
+# kill -9 at random moments under load, so many times.
+CRASHES ?= 200
+crash-test: build
+	RFMVO_CRASHES=$(CRASHES) build/release/tests/rfmvo_box_tests --gtest_filter='Crash.*'
+
+# rfmvod on a real V4L2 driver, in a guest machine with Debian's kernel.
+test-camera: packages
+	@cmake/install-packages.sh qemu-system-x86 busybox-static kmod cpio v4l-utils
+	@$(MAKE) --no-print-directory build/release/build.ninja
+	@cmake --build build/release -j $(JOBS) --target rfmvod
+	@rm -rf build/camera && mkdir -p build/camera && cp build/release/firmware/rfmvod build/camera/
+	@tests/boot/guest.sh build/camera tests/boot/camera_guest.sh
+
+# What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30
 fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev
 	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ $(CCACHE) >/dev/null
 	@cmake --build build/fuzz -j $(JOBS)
 	@build/fuzz/write_seeds build/fuzz/seeds
-	@set -e; for target in llrp config journal; do \
+	@set -e; for target in llrp config journal request; do \
 	  echo "$$target: $(FUZZ_SECONDS) s"; mkdir -p build/fuzz/corpus/$$target; \
 	  [ $$target = llrp ] && seeds='$(wildcard ../shared/data/llrp/*/)' || seeds=; \
 	  build/fuzz/$${target}_fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -rss_limit_mb=4096 -verbosity=0 \

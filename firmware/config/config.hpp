@@ -71,8 +71,18 @@ struct LcmConfig {
 };
 
 struct CameraConfig {
-  std::string source = "";            // images:DIR | journal:FILE
+  std::string source = "";            // v4l2:DEVICE | libcamera:ID | images:DIR | journal:FILE
   double start_time_s = 0.0;          // of images: device time of the first one, if they are played live
+  std::int64_t width_px = 640, height_px = 480;  // of what a camera takes, before crop
+  double frame_rate_hz = 30.0;        // 0: the camera's own
+  double exposure_s = 0.0;            // 0: automatic
+  double gain = 0.0;                  // 0: automatic
+  std::string format = "auto";
+  std::string flip = "none";
+  std::int64_t crop_x_px = 0, crop_y_px = 0;
+  std::int64_t crop_width_px = 0, crop_height_px = 0;  // 0: to the edge
+  double time_offset_s = 0.0;         // added to every frame's time
+  double stall_s = 1.0;               // without a picture for longer, a camera is started anew
 };
 
 struct ReaderConfig {
@@ -93,10 +103,17 @@ struct ReaderConfig {
 
 struct JournalConfig {
   std::string directory = "";         // empty: no journal
+  std::int64_t quota_mb = 16'000;     // of all journals in the folder; 0: no limit
+  std::int64_t segment_mb = 256;
+  double flush_s = 0.05;              // so much is lost at most when power fails
+  std::int64_t queue_mb = 64;         // what may wait for a slow card
+  std::string frames = "raw";         // raw | jpeg
+  std::int64_t jpeg_quality = 90;
 };
 
 struct DaemonConfig {
   std::string calibration = "";       // TOML file: camera, mounting, antennas
+  std::string key_file = "";          // shared key of remote configuration; empty: it is off
 };
 
 struct Config {

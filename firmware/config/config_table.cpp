@@ -32,6 +32,8 @@ using P = PaperConfig;
 using J = JointConfig;
 using V = VisionConfig;
 using R = ReaderConfig;
+using C = CameraConfig;
+using L = JournalConfig;
 
 // clang-format off
 const ConfigRow kRows[] = {
@@ -40,7 +42,7 @@ const ConfigRow kRows[] = {
     {"estimator.pose_source", "", &at<kEstimator, &E::pose_source>, 0, 0, "frames|poses",
      "where camera poses come from: frames (own visual odometry) or poses (camera poses of the event stream)"},
     {"estimator.publish_interval_s", "s", &at<kEstimator, &E::publish_interval_s>, 0.01, 3600, "",
-     "estimates are published this often, in event time"},
+     "estimates are published this often, in event time", true},
 
     {"sync.max_pose_gap_s", "s", &at<kSync, &SyncConfig::max_pose_gap_s>, 0.001, 10, "",
      "no interpolation across a longer gap between two camera poses"},
@@ -131,11 +133,37 @@ const ConfigRow kRows[] = {
     {"lcm.prefix", "", &at<kLcm, &LcmConfig::prefix>, 0, 0, "",
      "before every channel name, on the bus and in logs"},
 
-    {"camera.source", "", &at<kCamera, &CameraConfig::source>, 0, 0, "",
-     "images:DIR (a folder with images/, times.txt, calib.txt) or journal:FILE (all events of a journal)"},
-
-    {"camera.start_time_s", "s", &at<kCamera, &CameraConfig::start_time_s>, 0, 9e9, "",
+    {"camera.source", "", &at<kCamera, &C::source>, 0, 0, "",
+     "v4l2:DEVICE (such as v4l2:/dev/video0), libcamera:ID (libcamera: is the first one), images:DIR (a folder with images/, "
+     "times.txt, calib.txt) or journal:FILE (all events of a journal)"},
+    {"camera.start_time_s", "s", &at<kCamera, &C::start_time_s>, 0, 9e9, "",
      "images are played live and the first one is of this time since 1970; 0: as recorded, as fast as they can be used"},
+    {"camera.width_px", "px", &at<kCamera, &C::width_px>, 16, 8192, "",
+     "width of the pictures that the camera takes, before crop"},
+    {"camera.height_px", "px", &at<kCamera, &C::height_px>, 16, 8192, "",
+     "height of the pictures that the camera takes, before crop"},
+    {"camera.frame_rate_hz", "Hz", &at<kCamera, &C::frame_rate_hz>, 0, 1000, "",
+     "pictures per second; 0: the camera's own"},
+    {"camera.exposure_s", "s", &at<kCamera, &C::exposure_s>, 0, 1, "",
+     "exposure time of each picture; 0: automatic", true},
+    {"camera.gain", "", &at<kCamera, &C::gain>, 0, 1e6, "",
+     "analogue gain: a factor with libcamera, the driver's own unit with V4L2; 0: automatic", true},
+    {"camera.format", "", &at<kCamera, &C::format>, 0, 0, "auto|grey|nv12|yuv420|yuyv|mjpg",
+     "how pictures come from the camera; auto: the first of these that it has"},
+    {"camera.flip", "", &at<kCamera, &C::flip>, 0, 0, "none|horizontal|vertical|both",
+     "mirrors pictures left to right (horizontal), top to bottom (vertical), or turns them by 180 degrees (both), after the crop"},
+    {"camera.crop_x_px", "px", &at<kCamera, &C::crop_x_px>, 0, 8191, "",
+     "left edge of the part that is used"},
+    {"camera.crop_y_px", "px", &at<kCamera, &C::crop_y_px>, 0, 8191, "",
+     "upper edge of the part that is used"},
+    {"camera.crop_width_px", "px", &at<kCamera, &C::crop_width_px>, 0, 8192, "",
+     "width of the part that is used; 0: to the right edge"},
+    {"camera.crop_height_px", "px", &at<kCamera, &C::crop_height_px>, 0, 8192, "",
+     "height of the part that is used; 0: to the lower edge"},
+    {"camera.time_offset_s", "s", &at<kCamera, &C::time_offset_s>, -1, 1, "",
+     "added to the time of every picture: what is known of the driver's delay"},
+    {"camera.stall_s", "s", &at<kCamera, &C::stall_s>, 0.05, 60, "",
+     "a camera that gives no picture for longer is started anew"},
 
     {"reader.backend", "", &at<kReader, &R::backend>, 0, 0, "own|ltkcpp",
      "what speaks to the reader: own, or the LLRP Toolkit's C++ library if this program was built with it"},
@@ -164,11 +192,25 @@ const ConfigRow kRows[] = {
     {"reader.keepalive_s", "s", &at<kReader, &R::keepalive_s>, 0.1, 60, "",
      "the reader must show a sign of life this often; after three without, it is connected anew"},
 
-    {"journal.directory", "", &at<kJournal, &JournalConfig::directory>, 0, 0, "",
+    {"journal.directory", "", &at<kJournal, &L::directory>, 0, 0, "",
      "folder of the journals; empty: no journal"},
+    {"journal.quota_mb", "MB", &at<kJournal, &L::quota_mb>, 0, 1e8, "",
+     "all journals in the folder together; the oldest segments make room for new ones; 0: no limit"},
+    {"journal.segment_mb", "MB", &at<kJournal, &L::segment_mb>, 1, 100'000, "",
+     "a journal goes on in a new file after so much"},
+    {"journal.flush_s", "s", &at<kJournal, &L::flush_s>, 0.001, 10, "",
+     "what was written is on the disk after so long: what a power failure can take"},
+    {"journal.queue_mb", "MB", &at<kJournal, &L::queue_mb>, 1, 100'000, "",
+     "what may wait for a slow card before the oldest frames are dropped"},
+    {"journal.frames", "", &at<kJournal, &L::frames>, 0, 0, "raw|jpeg",
+     "frames of a camera in the journal: raw, or jpeg (smaller; the estimator then sees what the journal holds)"},
+    {"journal.jpeg_quality", "", &at<kJournal, &L::jpeg_quality>, 1, 100, "",
+     "of journal.frames = \"jpeg\""},
 
     {"daemon.calibration", "", &at<kDaemon, &DaemonConfig::calibration>, 0, 0, "",
      "TOML file with camera, mounting and antennas"},
+    {"daemon.key_file", "", &at<kDaemon, &DaemonConfig::key_file>, 0, 0, "",
+     "file with the shared key that remote changes of the configuration must be signed with; empty: there are none"},
 };
 // clang-format on
 
@@ -314,6 +356,11 @@ Status set_value_from_text(Config& config, std::string_view key, std::string_vie
 Status check_consistency(const Config& config) {
   if (config.joint.scale_min_m >= config.joint.scale_max_m)
     return Error{ErrorCode::kOutOfRange, "must be below joint.scale_max_m", "joint.scale_min_m"};
+  const CameraConfig& camera = config.camera;
+  if (camera.crop_x_px + std::max<std::int64_t>(camera.crop_width_px, 1) > camera.width_px)
+    return Error{ErrorCode::kOutOfRange, "the crop reaches beyond camera.width_px", "camera.crop_x_px"};
+  if (camera.crop_y_px + std::max<std::int64_t>(camera.crop_height_px, 1) > camera.height_px)
+    return Error{ErrorCode::kOutOfRange, "the crop reaches beyond camera.height_px", "camera.crop_y_px"};
   return Done{};
 }
 

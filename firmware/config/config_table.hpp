@@ -25,6 +25,7 @@ struct ConfigRow {
   double min = 0.0, max = 0.0;    // of numbers, inclusive
   std::string_view choices;       // of text, "a|b|c"; empty = any
   std::string_view doc;
+  bool live = false;              // a change takes effect while running; of others, by a new run
 };
 
 inline constexpr std::size_t kMaxTextLength = 1024;  // of keys and of text values, bytes

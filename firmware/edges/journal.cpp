@@ -4,6 +4,7 @@
 
 #include "edges/lcm_codec.hpp"
 #include "edges/log_file.hpp"
+#include "edges/recorder/segment_reader.hpp"
 
 namespace rfmvo {
 
@@ -36,7 +37,7 @@ Status LogWriter::publish(const Estimate& estimate) {
 Status LogWriter::close() { return impl_->file->close(); }
 
 struct JournalReader::Impl {
-  std::unique_ptr<LogFileReader> file;
+  std::unique_ptr<SegmentReader> file;
   std::string prefix;
   Options options;
 };
@@ -46,7 +47,7 @@ JournalReader::~JournalReader() = default;
 
 Result<std::unique_ptr<JournalReader>> JournalReader::open(const std::string& path, const std::string& prefix,
                                                            Options options) {
-  auto file = LogFileReader::open(path);
+  auto file = SegmentReader::open(path);
   if (!file) return file.error();
   auto impl = std::make_unique<Impl>(Impl{std::move(file).value(), prefix, options});
   return std::unique_ptr<JournalReader>(new JournalReader(std::move(impl)));
@@ -55,14 +56,14 @@ Result<std::unique_ptr<JournalReader>> JournalReader::open(const std::string& pa
 namespace {
 
 // An error in what a record holds, with the record's place in front.
-Error in_record(const LogFileReader& file, const LogRecord& record, const Error& error) {
+Error in_record(const SegmentReader& file, const LogRecord& record, const Error& error) {
   return {error.code, error.text(), file.where(record.offset)};
 }
 
 }  // namespace
 
 Result<std::optional<Event>> JournalReader::next() {
-  const LogFileReader& file = *impl_->file;
+  const SegmentReader& file = *impl_->file;
   while (true) {
     auto read = impl_->file->next();
     if (!read) return read.error();
@@ -80,7 +81,7 @@ Result<std::optional<Event>> JournalReader::next() {
 }
 
 Result<JournalSummary> summarise_journal(const std::string& path, const std::string& prefix) {
-  auto file = LogFileReader::open(path);
+  auto file = SegmentReader::open(path);
   if (!file) return file.error();
   JournalSummary summary;
   bool started = false;
@@ -105,8 +106,7 @@ Result<JournalSummary> summarise_journal(const std::string& path, const std::str
     summary.camera_poses += name == "CAMERA_POSE" ? 1 : 0;
     summary.tag_reads += name == "TAG_READ" ? 1 : 0;
   }
-  if (!started)
-    return Error{ErrorCode::kMalformed, "not a journal: it holds no " + prefix + "START event", path};
+  if (!started) return Error{ErrorCode::kMalformed, "not a journal: it holds no " + prefix + "START event", path};
   return summary;
 }
 
@@ -122,7 +122,7 @@ Status check_pose_source(const JournalSummary& journal, const Config& config, co
 }
 
 Result<std::vector<Estimate>> read_estimates(const std::string& path, const std::string& prefix) {
-  auto file = LogFileReader::open(path);
+  auto file = SegmentReader::open(path);
   if (!file) return file.error();
   std::vector<Estimate> estimates;
   while (true) {

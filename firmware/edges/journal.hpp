@@ -26,14 +26,15 @@ class LogWriter : public EventSink, public EstimateSink {
   std::unique_ptr<Impl> impl_;
 };
 
-// Events of a journal in recorded order. Channels of others are skipped; a truncated or foreign
-// file is an error that names the file and the byte offset.
+// Events of a journal in recorded order, through all its segments (recorder/journal_names.hpp). Channels of others are
+// skipped; a truncated or foreign file is an error that names the file and the byte offset.
 class JournalReader : public EventSource {
  public:
   struct Options {
     bool decode_frames = true;  // false: Frame events are skipped (replay from poses)
   };
-  [[nodiscard]] static Result<std::unique_ptr<JournalReader>> open(const std::string& path, const std::string& prefix, Options options);
+  [[nodiscard]] static Result<std::unique_ptr<JournalReader>> open(const std::string& path, const std::string& prefix,
+                                                                   Options options);
   ~JournalReader() override;
   [[nodiscard]] Result<std::optional<Event>> next() override;
 

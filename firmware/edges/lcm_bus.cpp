@@ -66,11 +66,15 @@ Result<std::unique_ptr<LcmBus>> LcmBus::create(const std::string& url, const std
 }
 
 Status LcmBus::publish(const Estimate& estimate) {
-  for (const LcmMessage& message : encode(estimate, impl_->prefix)) {
-    const auto size = static_cast<unsigned>(message.data.size());
-    if (impl_->bus.publish(message.channel, message.data.data(), size) != 0)
-      return Error{ErrorCode::kUnwritable, std::string("cannot publish: ") + std::strerror(errno), message.channel};
-  }
+  for (const LcmMessage& message : encode(estimate, impl_->prefix))
+    if (const Status s = publish(message); !s) return s;
+  return Done{};
+}
+
+Status LcmBus::publish(const LcmMessage& message) {
+  const auto size = static_cast<unsigned>(message.data.size());
+  if (impl_->bus.publish(message.channel, message.data.data(), size) != 0)
+    return Error{ErrorCode::kUnwritable, std::string("cannot publish: ") + std::strerror(errno), message.channel};
   return Done{};
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "edges/event_io.hpp"
+#include "edges/lcm_codec.hpp"
 
 namespace rfmvo {
 
@@ -17,6 +18,7 @@ class LcmBus : public EstimateSink {
 
   // Errors: kUnwritable; the bus stays usable.
   [[nodiscard]] Status publish(const Estimate& estimate) override;
+  [[nodiscard]] Status publish(const LcmMessage& message);
 
  private:
   struct Impl;

@@ -33,6 +33,16 @@ std::uint64_t get(const Header& header, std::size_t offset) {
   return value;
 }
 
+Header header_of(std::int64_t number, std::int64_t utime, std::size_t channel_bytes, std::size_t data_bytes) {
+  Header header{};
+  put<4>(header, 0, kSyncWord);
+  put<8>(header, 4, static_cast<std::uint64_t>(number));
+  put<8>(header, 12, static_cast<std::uint64_t>(utime));
+  put<4>(header, 20, channel_bytes);
+  put<4>(header, 24, data_bytes);
+  return header;
+}
+
 std::string temporary_of(const std::string& path) { return path + ".tmp"; }
 
 Error unwritable(const std::string& path, const std::string& why) {
@@ -49,6 +59,15 @@ void sync_folder_of(const std::string& path) {
 }
 
 }  // namespace
+
+void append_log_record(std::vector<std::uint8_t>& out, std::int64_t number, std::int64_t utime,
+                       std::string_view channel, std::span<const std::uint8_t> data) {
+  RFMVO_ASSERT(!channel.empty() && channel.size() <= kMaxChannelBytes);
+  const Header header = header_of(number, utime, channel.size(), data.size());
+  out.insert(out.end(), header.begin(), header.end());
+  out.insert(out.end(), channel.begin(), channel.end());
+  out.insert(out.end(), data.begin(), data.end());
+}
 
 Result<std::unique_ptr<LogFileWriter>> LogFileWriter::create(const std::string& path) {
   std::error_code ignored;
@@ -79,12 +98,7 @@ Status LogFileWriter::write(std::string_view channel, std::int64_t utime, std::s
   RFMVO_ASSERT(file_ != nullptr && !channel.empty());
   if (channel.size() > kMaxChannelBytes)
     return Error{ErrorCode::kOutOfRange, "channel name is longer than 63 bytes", std::string(channel)};
-  Header header{};
-  put<4>(header, 0, kSyncWord);
-  put<8>(header, 4, static_cast<std::uint64_t>(count_));
-  put<8>(header, 12, static_cast<std::uint64_t>(utime));
-  put<4>(header, 20, channel.size());
-  put<4>(header, 24, data.size());
+  const Header header = header_of(count_, utime, channel.size(), data.size());
   const bool written = std::fwrite(header.data(), 1, header.size(), file_) == header.size() &&
                        std::fwrite(channel.data(), 1, channel.size(), file_) == channel.size() &&
                        std::fwrite(data.data(), 1, data.size(), file_) == data.size();

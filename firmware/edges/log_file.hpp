@@ -24,6 +24,10 @@ struct LogRecord {
   std::vector<std::uint8_t> data;
 };
 
+// Appends one record to `out`. channel: 1..63 bytes; data: what the header can say.
+void append_log_record(std::vector<std::uint8_t>& out, std::int64_t number, std::int64_t utime,
+                       std::string_view channel, std::span<const std::uint8_t> data);
+
 // Writes PATH.tmp, which becomes PATH when close() succeeds and is removed otherwise.
 class LogFileWriter {
  public:
@@ -58,6 +62,7 @@ class LogFileReader {
   [[nodiscard]] Result<std::optional<LogRecord>> next(bool with_data = true);
   // "FILE: byte OFFSET", for errors in what a record holds.
   [[nodiscard]] std::string where(std::int64_t offset) const;
+  [[nodiscard]] std::int64_t offset() const { return offset_; }  // behind the last record
 
  private:
   LogFileReader(std::string path, std::FILE* file, std::int64_t size)

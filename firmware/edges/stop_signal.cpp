@@ -1,19 +1,24 @@
 #include "edges/stop_signal.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace rfmvo {
 namespace {
 
 // Global, because a signal handler has nothing else to reach.
-volatile std::sig_atomic_t stop_flag = 0;
+std::atomic<bool> stop_flag{false};
 
-void on_signal(int) { stop_flag = 1; }
+std::atomic<bool> reload_flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "or a signal handler may not touch it");
+
+void on_signal(int) { stop_flag = true; }
+void on_reload(int) { reload_flag = true; }
 
 }  // namespace
 
 void catch_stop_signals() {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // and no SA_RESTART
   (void)::sigaction(SIGTERM, &action, nullptr);
@@ -22,6 +27,16 @@ void catch_stop_signals() {
   (void)::signal(SIGPIPE, SIG_IGN);
 }
 
-bool stop_requested() { return stop_flag != 0; }
+bool stop_requested() { return stop_flag; }
+
+void catch_reload_signal() {
+  struct sigaction action {};
+  action.sa_handler = on_reload;
+  (void)::sigaction(SIGHUP, &action, nullptr);
+}
+
+bool take_reload_request() { return reload_flag.exchange(false); }
+
+void request_reload() { reload_flag = true; }
 
 }  // namespace rfmvo

@@ -4,6 +4,7 @@
 #include <optional>
 #include <variant>
 
+#include "config/config_table.hpp"
 #include "estimator/joint_estimator.hpp"
 #include "estimator/paper_estimator.hpp"
 #include "estimator/sampling_synchronization.hpp"
@@ -29,7 +30,7 @@ struct Pipeline::State {
   void on(const Tick&) {}
   void on(const Fault& fault);
   void on(const ReaderStatus& status) { health.reader = status; }
-  void on(const Command&) {}
+  void on(const Command& command);
   void track(const CameraPose& pose);
   void feed(const std::vector<SampledRead>& reads);
   void publish(bool final);
@@ -93,6 +94,12 @@ void Pipeline::State::feed(const std::vector<SampledRead>& reads) {
 void Pipeline::State::on(const Fault& fault) {
   ++health.faults;
   health.last_fault = fault.source + ": " + fault.text;
+}
+
+// What may change while running; everything else needs a new Start. The source has checked key and value.
+void Pipeline::State::on(const Command& command) {
+  const ConfigRow* row = find_row(command.key);
+  if (row != nullptr && row->live) (void)set_value_from_text(config, command.key, command.value);
 }
 
 void Pipeline::State::publish(bool final) {

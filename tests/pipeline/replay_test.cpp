@@ -67,12 +67,15 @@ TEST_P(Replay, TheResultHoldsItsStartAndEstimates) {
 
 // The live run: rfmvod with a journal as its source. Its own journal, replayed, must give the same bits.
 TEST_P(Replay, ALiveRunAndTheReplayOfItsJournalAreByteIdentical) {
-  write_file(folder_ / "box.toml", "[camera]\nsource = \"journal:" + journal_ + "\"\n[estimator]\npose_source = \"poses\"\nkind = \"" +
-                                       GetParam() + "\"\n[lcm]\nurl = \"memq://\"\n[journal]\ndirectory = \"" + (folder_ / "logs") + "\"\n");
-  const CommandResult live = rfmvod("--config " + in_quotes(folder_ / "box.toml") + " --result " + in_quotes(folder_ / "live.lcmlog"));
+  write_file(folder_ / "box.toml",
+             "[camera]\nsource = \"journal:" + journal_ + "\"\n[estimator]\npose_source = \"poses\"\nkind = \"" +
+                 GetParam() + "\"\n[lcm]\nurl = \"memq://\"\n[journal]\ndirectory = \"" + (folder_ / "logs") + "\"\n");
+  const CommandResult live =
+      rfmvod("--config " + in_quotes(folder_ / "box.toml") + " --result " + in_quotes(folder_ / "live.lcmlog"));
   ASSERT_EQ(live.exit_code, 0) << live.err;
   const std::string recorded = folder_ / "logs/20231114T221320Z.lcmlog";
-  const CommandResult replay = rfmvo("replay " + in_quotes(recorded) + " --out " + in_quotes(folder_ / "replay.lcmlog"));
+  const CommandResult replay =
+      rfmvo("replay " + in_quotes(recorded) + " --out " + in_quotes(folder_ / "replay.lcmlog"));
   ASSERT_EQ(replay.exit_code, 0) << replay.err;
   const std::string live_bytes = read_file(folder_ / "live.lcmlog");
   EXPECT_FALSE(live_bytes.empty());
@@ -83,8 +86,10 @@ TEST(Daemon, PublishesOnTheBusWhatItWritesToTheResult) {
   const TemporaryFolder folder;
   testing::write_journal(folder / "run.lcmlog", testing::short_run(kPoses));
   write_file(folder / "box.toml", "[camera]\nsource = \"journal:" + (folder / "run.lcmlog") +
-                                      "\"\n[estimator]\npose_source = \"poses\"\n[lcm]\nurl = \"file://" + (folder / "bus.lcmlog") + "?mode=w\"\n");
-  const CommandResult live = rfmvod("--config " + in_quotes(folder / "box.toml") + " --result " + in_quotes(folder / "live.lcmlog"));
+                                      "\"\n[estimator]\npose_source = \"poses\"\n[lcm]\nurl = \"file://" +
+                                      (folder / "bus.lcmlog") + "?mode=w\"\n");
+  const CommandResult live =
+      rfmvod("--config " + in_quotes(folder / "box.toml") + " --result " + in_quotes(folder / "live.lcmlog"));
   ASSERT_EQ(live.exit_code, 0) << live.err;
   const auto bus = LogFileReader::open(folder / "bus.lcmlog");
   const auto result = LogFileReader::open(folder / "live.lcmlog");
@@ -107,14 +112,16 @@ TEST(Daemon, PublishesOnTheBusWhatItWritesToTheResult) {
 TEST(Daemon, AStopSignalEndsItWithAWholeJournal) {
   const TemporaryFolder folder;
   testing::write_journal(folder / "run.lcmlog", testing::short_run(20000));
-  write_file(folder / "box.toml", "[camera]\nsource = \"journal:" + (folder / "run.lcmlog") +
-                                      "\"\n[estimator]\npose_source = \"poses\"\nkind = \"paper\"\n[lcm]\nurl = \"memq://\"\n");
+  write_file(folder / "box.toml",
+             "[camera]\nsource = \"journal:" + (folder / "run.lcmlog") +
+                 "\"\n[estimator]\npose_source = \"poses\"\nkind = \"paper\"\n[lcm]\nurl = \"memq://\"\n");
   // The daemon is told to stop as soon as its journal has begun to grow.
   const std::string logs = folder / "logs";
-  const CommandResult live = run_command(
-      RFMVO_DAEMON " --config " + in_quotes(folder / "box.toml") + " --journal " + in_quotes(logs) + " & pid=$!; " +
-      "while [ -z \"$(find " + in_quotes(logs) + " -name '*.tmp' -size +0 2>/dev/null)\" ] && kill -0 $pid 2>/dev/null; do :; done; " +
-      "kill -TERM $pid; wait $pid");
+  const CommandResult live =
+      run_command(RFMVO_DAEMON " --config " + in_quotes(folder / "box.toml") + " --journal " + in_quotes(logs) +
+                  " & pid=$!; " + "while [ -z \"$(find " + in_quotes(logs) +
+                  " -name '*.tmp' -size +0 2>/dev/null)\" ] && kill -0 $pid 2>/dev/null; do :; done; " +
+                  "kill -TERM $pid; wait $pid");
   EXPECT_EQ(live.exit_code, 0) << live.err;
   const std::string path = logs + "/20231114T221320Z.lcmlog";
   const auto summary = summarise_journal(path, LcmConfig{}.prefix);
@@ -128,9 +135,11 @@ TEST(Daemon, SaysInOneLineWhatItCannotDo) {
     write_file(folder / "box.toml", toml);
     return rfmvod("--config " + in_quotes(folder / "box.toml") + " --journal " + in_quotes(folder / "logs"));
   };
-  expect_one_line(with("[camera]\nsource = \"libcamera:0\"\n"), "camera.source: \"libcamera:0\" is not supported");
+  expect_one_line(with("[camera]\nsource = \"webcam:0\"\n"), "camera.source: \"webcam:0\" is not supported");
+  expect_one_line(with("[camera]\nsource = \"v4l2:/dev/video0\"\n"), "daemon.calibration: is not set; a camera needs");
   expect_one_line(with(""), "camera.source: is not set");
-  expect_one_line(with("[camera]\nsorce = \"x\"\n"), "box.toml:2: camera.sorce: unknown key; did you mean camera.source?");
+  expect_one_line(with("[camera]\nsorce = \"x\"\n"),
+                  "box.toml:2: camera.sorce: unknown key; did you mean camera.source?");
   expect_one_line(with("[camera]\nsource = \"journal:/nowhere/run.lcmlog\"\n"), "/nowhere/run.lcmlog: no such file");
   expect_one_line(with("[camera]\nsource = \"images:/nowhere\"\n"), "/nowhere/calib.txt: no such file");
   expect_one_line(with("[daemon]\ncalibration = \"/nowhere/c.toml\"\n"), "/nowhere/c.toml: no such file");
@@ -145,7 +154,8 @@ class BadInput : public ::testing::Test {
   // Replays and checks that no result was left behind.
   CommandResult replay(const std::string& journal, const std::string& more = "") {
     const auto before = folder_.names();
-    CommandResult result = rfmvo("replay " + in_quotes(journal) + " --out " + in_quotes(folder_ / "result.lcmlog") + " " + more);
+    CommandResult result =
+        rfmvo("replay " + in_quotes(journal) + " --out " + in_quotes(folder_ / "result.lcmlog") + " " + more);
     EXPECT_EQ(folder_.names(), before);
     return result;
   }
@@ -171,7 +181,9 @@ TEST_F(BadInput, ALogWithoutAStartIsNoJournal) {
   expect_one_line(replay(folder_ / "tick.lcmlog"), "tick.lcmlog: not a journal: it holds no RFMVO_START event");
 }
 
-TEST_F(BadInput, AMissingJournalIsNamed) { expect_one_line(replay("/nowhere/run.lcmlog"), "/nowhere/run.lcmlog: no such file"); }
+TEST_F(BadInput, AMissingJournalIsNamed) {
+  expect_one_line(replay("/nowhere/run.lcmlog"), "/nowhere/run.lcmlog: no such file");
+}
 
 TEST_F(BadInput, AnUnknownConfigurationKeyNamesLineAndNearestKey) {
   write_file(folder_ / "c.toml", "[joint]\nknot_spacing = 1\n");
@@ -187,14 +199,16 @@ TEST_F(BadInput, AWrongUnitNamesKeyAndUnit) {
 }
 
 TEST_F(BadInput, AnUnwritableResultIsNamed) {
-  expect_one_line(rfmvo("replay " + in_quotes(journal_) + " --out /nowhere/r.lcmlog"), "/nowhere/r.lcmlog: cannot be written");
+  expect_one_line(rfmvo("replay " + in_quotes(journal_) + " --out /nowhere/r.lcmlog"),
+                  "/nowhere/r.lcmlog: cannot be written");
   expect_one_line(rfmvo("replay " + in_quotes(journal_) + " --out " + in_quotes(journal_)), "is the journal itself");
 }
 
 TEST_F(BadInput, AJournalWithoutFramesSaysThatItHasPoses) {
   expect_one_line(replay(journal_, "--from frames"), "run.lcmlog: holds no frames, but camera poses");
   testing::write_journal(folder_ / "frames.lcmlog", {testing::one_of_each_event()[0], testing::one_of_each_event()[1]});
-  expect_one_line(replay(folder_ / "frames.lcmlog", "--from poses"), "frames.lcmlog: holds no camera poses, but frames");
+  expect_one_line(replay(folder_ / "frames.lcmlog", "--from poses"),
+                  "frames.lcmlog: holds no camera poses, but frames");
 }
 
 TEST_F(BadInput, AWrongCommandLineGivesTwo) {
@@ -209,8 +223,9 @@ TEST(ReplaySpeed, PacedReplayPublishesAndTakesItsTime) {
   const TemporaryFolder folder;
   testing::write_journal(folder / "run.lcmlog", testing::short_run(11));  // 1.2 s of events
   const std::string bus = "'lcm.url=file://" + (folder / "bus.lcmlog") + "?mode=w'";
-  const CommandResult paced = rfmvo("replay " + in_quotes(folder / "run.lcmlog") + " --out " + in_quotes(folder / "a.lcmlog") +
-                                    " --speed 4 --set " + bus + " --json " + in_quotes(folder / "a.json"));
+  const CommandResult paced =
+      rfmvo("replay " + in_quotes(folder / "run.lcmlog") + " --out " + in_quotes(folder / "a.lcmlog") +
+            " --speed 4 --set " + bus + " --json " + in_quotes(folder / "a.json"));
   ASSERT_EQ(paced.exit_code, 0) << paced.err;
   const auto json = nlohmann::json::parse(read_file(folder / "a.json"));
   EXPECT_GE(json.at("wall_s").get<double>(), json.at("event_span_s").get<double>() / 4);
