@@ -20,7 +20,7 @@ namespace rfmvo {
 // From the half on, a second window fills beside it and takes over: what passes the antennas within half a window is
 // seen whole by one of them. Time and memory are those of two windows, however long the drive.
 struct Window {
-  double length_m = 40.0;
+  double length_m = 24.0;
   std::size_t poses = 18000;
 };
 

@@ -240,25 +240,39 @@ Eigen::Vector3d JointSegment::antenna_L(const SegmentTag::Read& read) const {
   return T_L_C(pose) * shared_.ports[static_cast<std::size_t>(read.read.port)].lever_arm_C;
 }
 
-Eigen::MatrixXd JointSegment::pose_jacobian(const PathPose& pose) const {
+// A pose depends on the scale and on two knots only: (d, theta) of each.
+JointSegment::PoseColumns JointSegment::pose_columns(const PathPose& pose) const {
   const SharedLayout& layout = covariance_.layout;
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(6, layout.size());
-  J.block<3, 1>(0, SharedLayout::kLogScale) = std::exp(shared_.log_scale) * pose.n_W;
+  PoseColumns c;
+  c.J.setZero();
+  c.J.topLeftCorner<3, 1>() = std::exp(shared_.log_scale) * pose.n_W;
+  c.column[0] = SharedLayout::kLogScale;
   const KnotPlace place = path_.place(pose.arc_V, knot_spacing_V_);
   for (int side = 0; side < 2; ++side) {
-    const int k = std::min(place.knot + side, layout.knots - 1);
-    if (k == 0) continue;
+    const int k = std::min(place.knot + side, layout.knots - 1), first = 1 + 6 * side;
+    for (int i = 0; i < 6; ++i) c.column[static_cast<std::size_t>(first + i)] = k == 0 ? 0 : layout.knot(k) + i;
+    if (k == 0) continue;  // the frame's origin
     const double w = side == 0 ? 1.0 - place.fraction : place.fraction;
-    J.block<3, 3>(0, layout.knot(k)) += w * Eigen::Matrix3d::Identity();
-    J.block<3, 3>(3, layout.knot(k) + 3) += w * Eigen::Matrix3d::Identity();
+    c.J.block<6, 6>(0, first) = w * Eigen::Matrix<double, 6, 6>::Identity();
   }
+  return c;
+}
+
+Eigen::MatrixXd JointSegment::pose_jacobian(const PathPose& pose) const {
+  const PoseColumns c = pose_columns(pose);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(6, covariance_.layout.size());
+  for (std::size_t i = 0; i < c.column.size(); ++i) J.col(c.column[i]) += c.J.col(static_cast<Eigen::Index>(i));
   return J;
 }
 
 Eigen::Matrix<double, 6, 6> JointSegment::pose_covariance_L(const PathPose& pose) const {
   if (covariance_.shared.size() == 0) return Eigen::Matrix<double, 6, 6>::Zero();
-  const Eigen::MatrixXd J = pose_jacobian(pose);
-  return J * covariance_.shared * J.transpose();
+  const PoseColumns c = pose_columns(pose);
+  Eigen::Matrix<double, 13, 13> P;
+  for (Eigen::Index i = 0; i < 13; ++i)
+    for (Eigen::Index j = 0; j < 13; ++j)
+      P(i, j) = covariance_.shared(c.column[static_cast<std::size_t>(i)], c.column[static_cast<std::size_t>(j)]);
+  return c.J * P * c.J.transpose();
 }
 
 Eigen::Matrix<double, 6, 6> JointSegment::pose_covariance_W(const PathPose& pose) const {

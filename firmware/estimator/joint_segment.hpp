@@ -1,6 +1,7 @@
 // One odometry segment of the joint estimator, or several that were joined: reads, path, states and their solution.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <vector>
@@ -130,6 +131,11 @@ class JointSegment {
   [[nodiscard]] JointState state_for(const std::vector<Candidate>& some) const;
   void keep(const std::vector<Candidate>& some, const JointState& state);
   void resize_knots();
+  struct PoseColumns {
+    Eigen::Matrix<double, 6, 13> J;  // d (position, rotation) / d states
+    std::array<int, 13> column{};    // of these among the shared states
+  };
+  [[nodiscard]] PoseColumns pose_columns(const PathPose& pose) const;
   [[nodiscard]] KnotState knot_at(double arc_V) const;
   struct Expected {
     Rigid3 T_L_C;

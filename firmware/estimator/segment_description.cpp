@@ -7,6 +7,7 @@
 
 #include "estimator/accuracy_estimation.hpp"
 #include "estimator/principal_axes.hpp"
+#include "estimator/tag_map.hpp"
 
 namespace rfmvo {
 namespace {
@@ -148,8 +149,6 @@ TagStatus status_of(const JointSegment& segment, const SegmentTag& tag, bool und
   return sigma_m > config.located_sigma_max_m ? TagStatus::kWeakGeometry : TagStatus::kConverged;
 }
 
-}  // namespace
-
 TagEstimate describe_tag(const JointSegment& segment, const Epc& epc, const SegmentTag& tag, DeviceTime now,
                          double camera_rotation_sigma_rad, const JointConfig& config) {
   TagEstimate e;
@@ -211,6 +210,7 @@ TagEstimate describe_tag(const JointSegment& segment, const Epc& epc, const Segm
   return e;
 }
 
+// One of each per piece of the path.
 std::vector<ScaleEstimate> describe_scales(const JointSegment& segment, DeviceTime now) {
   std::vector<ScaleEstimate> scales;
   for (std::size_t piece = 0; piece < segment.ids().size(); ++piece)
@@ -228,6 +228,23 @@ std::vector<Trajectory> describe_paths(const JointSegment& segment, DeviceTime n
     paths[segment.path().piece_of(pose.arc_V)].poses.push_back(
         {pose.time, segment.id_of(pose), segment.revision(), segment.T_W_C(pose), segment.pose_covariance_W(pose)});
   return paths;
+}
+
+}  // namespace
+
+SegmentsDescription describe_segments(const std::vector<JointSegment>& segments, DeviceTime now,
+                                      double camera_rotation_sigma_rad, const JointConfig& config) {
+  SegmentsDescription all;
+  for (const JointSegment& s : segments) {
+    for (const auto& [epc, tag] : s.tags()) {
+      TagEstimate e = describe_tag(s, epc, tag, now, camera_rotation_sigma_rad, config);
+      const auto [place, first] = all.tags.try_emplace(epc, e);
+      if (!first && says_more(e, place->second)) place->second = std::move(e);
+    }
+    for (const ScaleEstimate& scale : describe_scales(s, now)) all.scales.push_back(scale);
+    for (Trajectory& path : describe_paths(s, now)) all.paths.push_back(std::move(path));
+  }
+  return all;
 }
 
 }  // namespace rfmvo

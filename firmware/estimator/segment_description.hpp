@@ -1,6 +1,7 @@
 // What a segment's solution says, as the estimator publishes it: in W, with honest covariances and a status.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "config/config.hpp"
@@ -9,12 +10,14 @@
 
 namespace rfmvo {
 
-// camera_rotation_sigma_rad: of the camera's orientation in the frame of the antennas, see calibration.hpp.
-[[nodiscard]] TagEstimate describe_tag(const JointSegment& segment, const Epc& epc, const SegmentTag& tag,
-                                       DeviceTime now, double camera_rotation_sigma_rad, const JointConfig& config);
+struct SegmentsDescription {
+  std::map<Epc, TagEstimate> tags;  // where several segments saw a tag: the one that says more
+  std::vector<ScaleEstimate> scales;
+  std::vector<Trajectory> paths;
+};
 
-// One of each per piece of the path.
-[[nodiscard]] std::vector<ScaleEstimate> describe_scales(const JointSegment& segment, DeviceTime now);
-[[nodiscard]] std::vector<Trajectory> describe_paths(const JointSegment& segment, DeviceTime now);
+// camera_rotation_sigma_rad: of the camera's orientation in the frame of the antennas, see calibration.hpp.
+[[nodiscard]] SegmentsDescription describe_segments(const std::vector<JointSegment>& segments, DeviceTime now,
+                                                    double camera_rotation_sigma_rad, const JointConfig& config);
 
 }  // namespace rfmvo
