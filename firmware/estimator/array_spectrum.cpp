@@ -41,21 +41,27 @@ double longest(const Eigen::Array<double, Eigen::Dynamic, 3>& rows) { return row
 }  // namespace
 
 DirectionGrid::DirectionGrid(std::vector<double> alpha_rad, std::vector<double> beta_rad)
-    : alpha_rad_(std::move(alpha_rad)), beta_rad_(std::move(beta_rad)) {
-  for (std::vector<float>* axis : {&x_, &y_, &z_}) axis->reserve(alpha_rad_.size() * beta_rad_.size());
-  std::vector<double> cos_beta, sin_beta;
-  for (const double beta : beta_rad_) {
-    cos_beta.push_back(std::cos(beta));
-    sin_beta.push_back(std::sin(beta));
-  }
-  for (const double alpha : alpha_rad_) {  // Eq. (15)
-    const double cos_alpha = std::cos(alpha), sin_alpha = std::sin(alpha);
-    for (std::size_t b = 0; b < beta_rad_.size(); ++b) {
-      x_.push_back(static_cast<float>(cos_alpha * cos_beta[b]));
-      y_.push_back(static_cast<float>(sin_alpha * cos_beta[b]));
-      z_.push_back(static_cast<float>(sin_beta[b]));
+    : alpha_rad_(std::move(alpha_rad)),
+      beta_rad_(std::move(beta_rad)),
+      alpha_(sides_of(alpha_rad_)),
+      beta_(sides_of(beta_rad_)) {
+  const std::size_t size = alpha_.size() * beta_.size();
+  for (std::vector<float>* axis : {&x_, &y_, &z_}) axis->resize(size);
+  std::size_t n = 0;
+  for (const Sides& a : alpha_) {  // Eq. (15)
+    for (const Sides& b : beta_) {
+      x_[n] = static_cast<float>(a.cos * b.cos);
+      y_[n] = static_cast<float>(a.sin * b.cos);
+      z_[n++] = static_cast<float>(b.sin);
     }
   }
+}
+
+std::vector<DirectionGrid::Sides> DirectionGrid::sides_of(const std::vector<double>& angles_rad) {
+  std::vector<Sides> sides;
+  sides.reserve(angles_rad.size());
+  for (const double angle : angles_rad) sides.push_back({std::cos(angle), std::sin(angle)});
+  return sides;
 }
 
 // The usable steps in turns, as functions of the direction u (in D):
@@ -91,7 +97,7 @@ double ArraySpectrum::power(const IncidentAngles& angles, double gamma) {
 }
 
 void ArraySpectrum::raise(GridPeak& peak, const DirectionGrid& grid, std::size_t direction) {
-  const double here = power_along(direction_of(grid.angles(direction)));
+  const double here = power_along(grid.unit_vector(direction));
   if (here > peak.power) peak = {here, direction};
 }
 

@@ -25,10 +25,21 @@ class DirectionGrid {
   [[nodiscard]] IncidentAngles angles(std::size_t direction) const {
     return {alpha_rad_[direction / beta_rad_.size()], beta_rad_[direction % beta_rad_.size()]};
   }
+  // direction_of(angles), without its sines and cosines.
+  [[nodiscard]] Eigen::Vector3d unit_vector(std::size_t direction) const {
+    const Sides &alpha = alpha_[direction / beta_.size()], &beta = beta_[direction % beta_.size()];
+    return {alpha.cos * beta.cos, alpha.sin * beta.cos, beta.sin};
+  }
   [[nodiscard]] Directions directions() const { return {x_, y_, z_}; }
 
  private:
+  struct Sides {
+    double cos, sin;
+  };
+  static std::vector<Sides> sides_of(const std::vector<double>& angles_rad);
+
   std::vector<double> alpha_rad_, beta_rad_;
+  std::vector<Sides> alpha_, beta_;
   std::vector<float> x_, y_, z_;
 };
 

@@ -16,6 +16,7 @@ DistanceSteps::DistanceSteps(std::span<const AntennaArray* const> arrays, const 
   direction_.resize(elements, 3);
   derivative_.resize(elements, 4);
   distance_m_.resize(elements);
+  inverse_.resize(elements);
   const Eigen::Index steps = elements - 1;
   step_.resize(steps, 4);
   residual_m_.resize(steps);
@@ -34,17 +35,23 @@ DistanceSteps::DistanceSteps(std::span<const AntennaArray* const> arrays, const 
   }
 }
 
-NormalEquations DistanceSteps::at(const Eigen::Vector3d& p_X_m, double gamma) {
+double DistanceSteps::cost_at(const Eigen::Vector3d& p_X_m, double gamma) {
   for (int axis = 0; axis < 3; ++axis)
     direction_.col(axis) = p_X_m(axis) - lever_m_.col(axis) - gamma * camera_V_.col(axis);
   distance_m_ = (direction_.col(0).square() + direction_.col(1).square() + direction_.col(2).square())
                     .sqrt()
                     .max(kMinTagDistance_m);
-  for (int axis = 0; axis < 3; ++axis) derivative_.col(axis) = direction_.col(axis) / distance_m_;
+  const Eigen::Index steps = weight_.size();
+  residual_m_ = weight_ * (measured_m_ - (distance_m_.tail(steps) - distance_m_.head(steps)));
+  return residual_m_.square().sum();
+}
+
+NormalEquations DistanceSteps::normal_equations() {
+  inverse_ = distance_m_.inverse();  // one division instead of three
+  for (int axis = 0; axis < 3; ++axis) derivative_.col(axis) = direction_.col(axis) * inverse_;
   derivative_.col(3) = -(derivative_.col(0) * camera_V_.col(0) + derivative_.col(1) * camera_V_.col(1) +
                          derivative_.col(2) * camera_V_.col(2));
   const Eigen::Index steps = weight_.size();
-  residual_m_ = weight_ * (measured_m_ - (distance_m_.tail(steps) - distance_m_.head(steps)));
   for (int column = 0; column < 4; ++column)
     step_.col(column) = weight_ * (derivative_.col(column).tail(steps) - derivative_.col(column).head(steps));
   NormalEquations sums;
@@ -52,7 +59,6 @@ NormalEquations DistanceSteps::at(const Eigen::Vector3d& p_X_m, double gamma) {
     for (int b = 0; b <= a; ++b) sums.matrix(a, b) = sums.matrix(b, a) = (step_.col(a) * step_.col(b)).sum();
     sums.gradient(a) = -(step_.col(a) * residual_m_).sum();  // the residual's derivative is -step
   }
-  sums.cost = residual_m_.square().sum();
   return sums;
 }
 

@@ -9,11 +9,10 @@
 
 namespace rfmvo {
 
-// J'J, J'r and |r|^2 of r = Delta d_A - Delta d_C over (X_T, gamma).
+// J'J and J'r of r = Delta d_A - Delta d_C over (X_T, gamma).
 struct NormalEquations {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
   Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-  double cost = 0.0;
 };
 
 class DistanceSteps {
@@ -21,7 +20,10 @@ class DistanceSteps {
   // measured_m: Delta d_A of the usable steps, antenna by antenna. The arrays may go afterwards.
   DistanceSteps(std::span<const AntennaArray* const> arrays, const Eigen::VectorXd& measured_m);
 
-  [[nodiscard]] NormalEquations at(const Eigen::Vector3d& p_X_m, double gamma);
+  // |r|^2 alone, much cheaper; a trial that does not lower it needs no more.
+  [[nodiscard]] double cost_at(const Eigen::Vector3d& p_X_m, double gamma);
+  // Where cost_at() was asked for last.
+  [[nodiscard]] NormalEquations normal_equations();
 
  private:
   using Rows3 = Eigen::Array<double, Eigen::Dynamic, 3>;
@@ -32,7 +34,7 @@ class DistanceSteps {
   Eigen::ArrayXd measured_m_, weight_;
   Rows3 direction_;          // scratch
   Rows4 derivative_, step_;  // scratch
-  Eigen::ArrayXd distance_m_, residual_m_;
+  Eigen::ArrayXd distance_m_, inverse_, residual_m_;
 };
 
 }  // namespace rfmvo

@@ -16,6 +16,7 @@ constexpr double kConverged_m = 1e-4;     // move of X_T between two outer itera
 constexpr double kConvergedScale = 1e-4;  // relative move of gamma
 constexpr int kMaxSteps = 50;             // of Levenberg-Marquardt per outer iteration
 constexpr double kMaxDamping = 1e12;
+constexpr double kNegligible = 1e-10;     // decrease of the cost, relative: 1e-5 sigma of what is estimated
 constexpr double kRunaway_m = 1e4;        // X_T goes to infinity where the data say "plane wave"
 constexpr double kUnknownSigma_m = 10.0;  // 1 sigma of a direction the data say nothing about
 constexpr double kUnknownLogScale = 1.0;  // same for the scale, relative
@@ -81,22 +82,29 @@ State minimise(std::span<const AntennaTerm> antennas, const Eigen::VectorXd& mea
   std::vector<const AntennaArray*> arrays;
   for (const AntennaTerm& term : antennas) arrays.push_back(&term.array);
   DistanceSteps steps(arrays, measured);
-  NormalEquations now = steps.at(state.p_X_m, state.gamma);
+  double cost = steps.cost_at(state.p_X_m, state.gamma);
+  NormalEquations now = steps.normal_equations();
   double damping = 1e-3;
   for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
+    const Eigen::Vector4d held = damping * now.matrix.diagonal().cwiseMax(1e-12);
     Eigen::Matrix4d normal = now.matrix;
-    normal.diagonal() += damping * normal.diagonal().cwiseMax(1e-12);
+    normal.diagonal() += held;
     const Eigen::Vector4d move = -normal.ldlt().solve(now.gradient);
+    // What the linear model promises. Without it, a minimum reached to the last digit is left only by ever more
+    // damping.
+    const double promised = move.dot(held.cwiseProduct(move) - now.gradient);
+    if (promised < kNegligible * cost) break;
     const State trial{state.p_X_m + move.head<3>(), state.gamma + move(3)};
     damping *= 10.0;
     if (!sane(trial)) continue;
-    const NormalEquations next = steps.at(trial.p_X_m, trial.gamma);
-    if (!(next.cost < now.cost)) continue;
-    const bool done = now.cost - next.cost < 1e-10 * now.cost;
+    const double trial_cost = steps.cost_at(trial.p_X_m, trial.gamma);
+    if (!(trial_cost < cost)) continue;
+    const bool done = cost - trial_cost < kNegligible * cost;
     state = trial;
-    now = next;
-    damping = std::max(damping * 1e-2, 1e-9);
+    cost = trial_cost;
     if (done) break;
+    now = steps.normal_equations();
+    damping = std::max(damping * 1e-2, 1e-9);
   }
   return state;
 }
@@ -161,12 +169,15 @@ LineIntersection intersect_lines(std::span<const AntennaTerm> antennas, std::spa
 ArraySolution joint_optimization(std::span<const AntennaTerm> antennas, double gamma, const JointOptions& options) {
   ArraySolution solution;
   State state{Eigen::Vector3d::Zero(), gamma};
-  for (const AntennaTerm& term : antennas) solution.angles.push_back(term.angles);
+  std::vector<AngleRefinement> refinements;
+  for (const AntennaTerm& term : antennas) {
+    solution.angles.push_back(term.angles);
+    refinements.emplace_back(term.array, options.refine_step_rad, options.refine_range_rad);
+  }
   for (int l = 0; l < options.max_iterations && !solution.converged; ++l) {
     const State last = state;
     for (std::size_t j = 0; j < antennas.size(); ++j)  // Eq. (16)
-      solution.angles[j] = refine_angles(antennas[j].array, solution.angles[j], state.gamma, options.refine_step_rad,
-                                         options.refine_range_rad);
+      solution.angles[j] = refinements[j].best(solution.angles[j], state.gamma);
     const LineIntersection start = intersect_lines(antennas, solution.angles, state.gamma, options.fix_sphere_average);
     state.p_X_m = start.point;
     if (!start.determined || !sane(state)) return solution;

@@ -6,7 +6,6 @@
 
 #include "base/assert.hpp"
 #include "base/units.hpp"
-#include "estimator/array_spectrum.hpp"
 
 namespace rfmvo {
 namespace {
@@ -36,6 +35,17 @@ std::vector<double> multiples(double step, double end) {
   const int count = static_cast<int>(std::floor(end / step + 1e-9));
   for (int n = 0; n <= count; ++n) values.push_back(n * step);
   return values;
+}
+
+// middle +- range by steps, within [0, pi].
+std::vector<double> window(double middle_rad, double step_rad, double range_rad) {
+  std::vector<double> angles;
+  const int count = static_cast<int>(std::floor(range_rad / step_rad + 1e-9));
+  for (int n = -count; n <= count; ++n) {
+    const double angle = middle_rad + n * step_rad;
+    if (angle >= -1e-9 && angle <= kPi + 1e-9) angles.push_back(angle);
+  }
+  return angles;
 }
 
 double median(std::vector<double> values) {
@@ -119,22 +129,22 @@ SpectrumPeak search_spectrum(std::span<const AntennaArray> arrays, const ScaleRa
   return peak;
 }
 
+AngleRefinement::AngleRefinement(const AntennaArray& array, double step_rad, double range_rad)
+    : spectrum_(array), step_rad_(step_rad), range_rad_(range_rad) {}
+
+IncidentAngles AngleRefinement::best(const IncidentAngles& around, double gamma) {
+  if (spectrum_.empty()) return around;
+  if (!grid_ || around.alpha_rad != middle_.alpha_rad || around.beta_rad != middle_.beta_rad) {
+    middle_ = around;
+    grid_.emplace(window(around.alpha_rad, step_rad_, range_rad_), window(around.beta_rad, step_rad_, range_rad_));
+  }
+  if (grid_->size() == 0) return around;
+  return grid_->angles(spectrum_.peaks(*grid_, {gamma, 0.0, 1}).front().direction);
+}
+
 IncidentAngles refine_angles(const AntennaArray& array, const IncidentAngles& around, double gamma, double step_rad,
                              double range_rad) {
-  ArraySpectrum spectrum(array);
-  if (spectrum.empty()) return around;
-  const auto window = [&](double middle_rad) {
-    std::vector<double> angles;
-    const int count = static_cast<int>(std::floor(range_rad / step_rad + 1e-9));
-    for (int n = -count; n <= count; ++n) {
-      const double angle = middle_rad + n * step_rad;
-      if (angle >= -1e-9 && angle <= kPi + 1e-9) angles.push_back(angle);
-    }
-    return angles;
-  };
-  const DirectionGrid grid(window(around.alpha_rad), window(around.beta_rad));
-  if (grid.size() == 0) return around;
-  return grid.angles(spectrum.peaks(grid, {gamma, 0.0, 1}).front().direction);
+  return AngleRefinement(array, step_rad, range_rad).best(around, gamma);
 }
 
 }  // namespace rfmvo

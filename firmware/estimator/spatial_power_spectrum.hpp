@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "estimator/antenna_array.hpp"
+#include "estimator/array_spectrum.hpp"
 #include "estimator/incident_angles.hpp"
 
 namespace rfmvo {
@@ -47,7 +49,21 @@ struct SpectrumPeak {
 [[nodiscard]] SpectrumPeak search_spectrum(std::span<const AntennaArray> arrays, const ScaleRange& range,
                                            double angle_step_rad, double relative_scale_step);
 
-// Eq. (16): the best angles within +- range of the given ones, gamma held.
+// Eq. (16) of one array, for as many angles and scales as it is asked about.
+class AngleRefinement {
+ public:
+  AngleRefinement(const AntennaArray& array, double step_rad, double range_rad);
+  // The best angles within +- range of the given ones, gamma held.
+  [[nodiscard]] IncidentAngles best(const IncidentAngles& around, double gamma);
+
+ private:
+  ArraySpectrum spectrum_;
+  double step_rad_, range_rad_;
+  IncidentAngles middle_;              // of the grid
+  std::optional<DirectionGrid> grid_;  // kept: near convergence the angles stay
+};
+
+// The same, once.
 [[nodiscard]] IncidentAngles refine_angles(const AntennaArray& array, const IncidentAngles& around, double gamma,
                                            double step_rad, double range_rad);
 

@@ -70,6 +70,31 @@ HWY_INLINE void add_two_pairs(const PlaneWaveSpectrum::Pair* pairs, const Lanes&
     hn::Store(add_halves(add_halves(hn::Load(d, sums), next_cosines(a)), next_cosines(b)), d, sums);
 }
 
+// One scale, the first: no step, and the sums stay in a register.
+template <bool kBoth>
+HWY_INLINE hn::Vec<Int32s> add_pair_once(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, hn::Vec<Int32s> sum) {
+  hn::Vec<Int32s> angle[2];
+  for (std::size_t half = 0; half < 2; ++half)
+    angle[half] = hn::Add(hn::Set(Int32s(), pair.phase_q32[half]), angle_q32<8>(u, pair.first[half]));
+  auto cosines = cosine_q15(high_halves(angle[0], angle[1]));
+  if constexpr (!kBoth) cosines = without_high_halves(cosines);
+  return add_halves(sum, cosines);
+}
+
+hn::Vec<Int32s> add_steps_once(const PlaneWaveSpectrum& spectrum, const Lanes& u) {
+  const auto pairs = spectrum.pairs();
+  const std::size_t both = pairs.size() - (spectrum.odd() ? 1 : 0);
+  auto even = hn::Zero(Int32s()), odd = even;  // two chains of additions
+  std::size_t p = 0;
+  for (; p + 2 <= both; p += 2) {
+    even = add_pair_once<true>(pairs[p], u, even);
+    odd = add_pair_once<true>(pairs[p + 1], u, odd);
+  }
+  if (p < both) even = add_pair_once<true>(pairs[p], u, even);
+  if (spectrum.odd()) odd = add_pair_once<false>(pairs[both], u, odd);
+  return hn::Add(even, odd);
+}
+
 template <bool kBoth>
 HWY_INLINE void add_pair(const PlaneWaveSpectrum::Pair& pair, const Lanes& u, Scales scales, std::int32_t* sums) {
   const Int32s d;
@@ -114,14 +139,19 @@ void evaluate_plane(const PlaneWaveSpectrum& spectrum, const Directions& directi
   static_assert(HWY_MAX_BYTES <= 4 * kMaxLanes);
   const std::size_t lanes = hn::Lanes(Floats()), count = directions.size();
   struct alignas(64) Row : std::array<std::int32_t, kMaxLanes> {};
+  const bool once = begin == 0 && end == 1;
   std::vector<Row> rows(static_cast<std::size_t>(end - begin));
   if (rows.empty()) return;
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t some = std::min(lanes, count - first);
     const Lanes u{load_some(&directions.x[first], some), load_some(&directions.y[first], some),
                   load_some(&directions.z[first], some)};
-    std::fill(rows.begin(), rows.end(), Row{});
-    add_steps(spectrum, u, {begin, end}, rows.data()->data());
+    if (once) {
+      hn::Store(add_steps_once(spectrum, u), Int32s(), rows.data()->data());
+    } else {
+      std::fill(rows.begin(), rows.end(), Row{});
+      add_steps(spectrum, u, {begin, end}, rows.data()->data());
+    }
     for (std::size_t n = 0; n < rows.size(); ++n) store_some(rows[n].data(), some, sums + n * count + first);
   }
 }

@@ -47,6 +47,19 @@ TEST(ReaderLink, DeliversEveryReadAsTheReaderReportedIt) {
   }
 }
 
+TEST(ReaderLink, LosesNothingWhenItGetsNoTimeForAMinute) {
+  ReaderBench bench(sample_model(60'000, 0.001));
+  ASSERT_TRUE(bench.run_until([&] { return bench.link->session().reading(); }, 1.0));
+  for (int step = 0; step < 6000; ++step) {
+    bench.now = bench.now + Duration::from_seconds(0.01);
+    bench.server->poll(Duration{0});
+  }
+  bench.run(1.0);
+  expect_same(bench.all<TagRead>(), bench.server->reader().reported());
+  EXPECT_EQ(bench.server->reader().reported().size(), 60'000u);
+  EXPECT_EQ(bench.all<ReaderStatus>().back().connections, 1u) << "what waits in the socket is a sign of life";
+}
+
 TEST(ReaderLink, LeavesTheReaderAsItFoundIt) {
   ReaderBench bench(sample_model());
   ASSERT_TRUE(bench.run_until([&] { return bench.link->session().reading(); }, 1.0));

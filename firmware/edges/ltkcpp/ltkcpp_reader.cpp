@@ -1,5 +1,9 @@
 #include "edges/ltkcpp/ltkcpp_reader.hpp"
 
+// The toolkit's headers look for gcc's old name of the system, which the standard's modes do not define.
+#if defined(__linux__) && !defined(linux)
+#define linux 1
+#endif
 #include <ltkcpp.h>
 
 #include <algorithm>
