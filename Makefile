@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench soak fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -90,6 +90,11 @@ test-arm64:
 
 bench: build
 	build/release/tests/rfmvo_benchmarks
+
+# Half an hour of rendered driving through the odometry: resident memory minute by minute. Takes about as long.
+SOAK_MINUTES ?= 30
+soak: build
+	build/release/tests/rfmvo_odometry_soak --minutes $(SOAK_MINUTES)
 
 # What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
 FUZZ_SECONDS ?= 30

@@ -5,6 +5,7 @@
 
 #include "vision/feature_tracks.hpp"
 #include "vision/motion_drift.hpp"
+#include "vision/relocalisation.hpp"
 #include "vision/rematching.hpp"
 
 namespace rfmvo {
@@ -23,6 +24,10 @@ constexpr double kNoiseMemory = 0.9;        // of a frame's noise for the next
 constexpr double kRayleighMedian = 1.1774;  // sqrt(2 ln 2): of the length of two axes' errors, in sigmas
 constexpr int kMinInliers = 12;            // fewer: no pose
 constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
+constexpr int kRelocaliseInliers = 40;     // three times as many as suffice on the way
+constexpr double kRelocaliseShare = 0.7;   // of the patches that were found where they should be
+constexpr double kSureMiss_px = 3.0;       // from where the map has it, once the pose is about right
+constexpr double kWayBeyond = 2.0, kWaySlack = 0.3;  // a gap's way: of what the speed before it gives; of the depth
 constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
 constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
 constexpr double kDriftEvery_s = 0.3, kDriftLatest_s = 0.6;  // how often it is measured; the latter even on key frames
@@ -134,7 +139,33 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   realign(map_, followed, pyramid, s.T_C_V, lens_.camera());
   s = locate_camera(s.T_C_V, time, followed);
   if (s.inliers == 0) return std::nullopt;
+  return accept(time, pyramid, std::move(followed), s);
+}
 
+std::optional<TrackedPose> MapTracker::relocalise(DeviceTime time, const Pyramid& pyramid) {
+  const MotionOptions wide{options_.mapping.focal_px, kMotionHuber_px, widest_gate_px_};
+  const auto guess = guess_pose(map_, lens_, pyramid[0], T_C_V_, wide);
+  if (!guess) return std::nullopt;
+  const double way = (guess->centre() - T_C_V_.centre()).norm();
+  const double usual = motion_s_ > 0.0 ? motion_.t_C_V.norm() / motion_s_ * (time - pose_time_).seconds() : 0.0;
+  if (way > kWayBeyond * usual + kWaySlack * median_depth_) return std::nullopt;
+  std::vector<Track> followed = rematch(map_, {}, pyramid, *guess, lens_.camera(), {options_.max_tracks, kRescueMiss_px});
+  MotionSolution s = locate_camera(*guess, time, followed);
+  if (s.inliers < kRelocaliseInliers) return std::nullopt;
+  followed = rematch(map_, {}, pyramid, s.T_C_V, lens_.camera(), {options_.max_tracks, kSureMiss_px});
+  s = locate_camera(s.T_C_V, time, followed);
+  const bool sure = s.inliers >= kRelocaliseInliers &&
+                    s.inliers >= kRelocaliseShare * static_cast<double>(followed.size());
+  if (!sure) return std::nullopt;
+  const double keyframes = way / (median_depth_ * kKeyframeFlow_rad);
+  TrackedPose pose = accept(time, pyramid, std::move(followed), s);
+  pose.keyframe_share = std::max(pose.keyframe_share, keyframes);
+  pose.relocalised = true;
+  return pose;
+}
+
+TrackedPose MapTracker::accept(DeviceTime time, const Pyramid& pyramid, std::vector<Track> followed,
+                               const MotionSolution& s) {
   update_gate(s);
   update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);
