@@ -71,7 +71,7 @@ struct VisualOdometry::Impl {
   const MapTrackerOptions options;
   Initialiser initialiser;
   std::optional<MapTracker> tracker;  // once there is a map
-  bool lost = false;  // the tracker has not known where it is for a while
+  bool lost = false;                  // the tracker has not known where it is for a while
   bool was_lost = false;
   std::uint32_t segment = 0;
   std::vector<Track> tracks;  // before there is a map
