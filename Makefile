@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build deb crash-test test-camera demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera soak demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -105,6 +105,12 @@ test-camera: packages
 	@tests/boot/guest.sh build/camera tests/boot/camera_guest.sh
 
 # What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
+# Half an hour of rendered driving through the odometry: resident memory minute by minute. Takes about as long.
+SOAK_MINUTES ?= 30
+soak: build
+	build/release/tests/rfmvo_odometry_soak --minutes $(SOAK_MINUTES)
+
+# What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
 FUZZ_SECONDS ?= 30
 fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev

@@ -5,6 +5,7 @@
 
 #include "vision/feature_tracks.hpp"
 #include "vision/motion_drift.hpp"
+#include "vision/relocalisation.hpp"
 #include "vision/rematching.hpp"
 
 namespace rfmvo {
@@ -12,21 +13,25 @@ namespace {
 
 constexpr double kKeyframeFlow_rad = 20.0 / 520.0;  // VISION design: rotation-compensated, 20 px at f about 520 px
 constexpr double kRematchFlow = 0.45;  // of that: old landmarks are looked for then, so that not all work comes at once
-constexpr double kKeyframeCommon = 0.7;    // VISION design: of the last key frame's tracks
-constexpr double kMotionHuber_px = 0.6;    // VISION design
-constexpr double kRescueMiss_px = 10.0;    // as far as a patch is looked for
+constexpr double kKeyframeCommon = 0.7;  // VISION design: of the last key frame's tracks
+constexpr double kMotionHuber_px = 0.6;  // VISION design
+constexpr double kRescueMiss_px = 10.0;  // as far as a patch is looked for
 // The gate: what is this many sigmas off is another thing, even if it is only a pixel. With a fixed 2 px, people and
 // repeated labels got in where pictures are good (shelfdiag: 0.06 % instead of 0.02); handheld frames need them.
 constexpr double kGateSigmas = 6.0;
 constexpr double kTightestGate = 0.4;       // of the configured gate: below, the map's own errors would be outliers
 constexpr double kNoiseMemory = 0.9;        // of a frame's noise for the next
 constexpr double kRayleighMedian = 1.1774;  // sqrt(2 ln 2): of the length of two axes' errors, in sigmas
-constexpr int kMinInliers = 12;            // fewer: no pose
-constexpr double kMinInlierShare = 0.4;    // of the located tracks: below, no pose
-constexpr int kMaxStrikes = 3;             // frames above the gate before a track is dropped
-constexpr double kMaxExtrapolation = 3.0;  // frames; a constant velocity is not believed longer
+constexpr int kMinInliers = 12;             // fewer: no pose
+constexpr double kMinInlierShare = 0.4;     // of the located tracks: below, no pose
+constexpr int kRelocaliseInliers = 40;      // three times as many as suffice on the way
+constexpr double kRelocaliseShare = 0.7;    // of the patches that were found where they should be
+constexpr double kSureMiss_px = 3.0;        // from where the map has it, once the pose is about right
+constexpr double kWayBeyond = 2.0, kWaySlack = 0.3;  // a gap's way: of what the speed before it gives; of the depth
+constexpr int kMaxStrikes = 3;                       // frames above the gate before a track is dropped
+constexpr double kMaxExtrapolation = 3.0;            // frames; a constant velocity is not believed longer
 constexpr double kDriftEvery_s = 0.3, kDriftLatest_s = 0.6;  // how often it is measured; the latter even on key frames
-constexpr double kNearest = 0.1;           // of the median depth: nearer points are not predicted
+constexpr double kNearest = 0.1;                             // of the median depth: nearer points are not predicted
 
 // What a key frame keeps for matching back: the images without their gradients, which are four times as large.
 Pyramid images_only(const Pyramid& pyramid) {
@@ -134,7 +139,35 @@ std::optional<TrackedPose> MapTracker::on(DeviceTime time, const Pyramid& pyrami
   realign(map_, followed, pyramid, s.T_C_V, lens_.camera());
   s = locate_camera(s.T_C_V, time, followed);
   if (s.inliers == 0) return std::nullopt;
+  return accept(time, pyramid, std::move(followed), s);
+}
 
+std::optional<TrackedPose> MapTracker::relocalise(DeviceTime time, const Pyramid& pyramid) {
+  const MotionOptions wide{options_.mapping.focal_px, kMotionHuber_px, widest_gate_px_};
+  const double ratio = motion_s_ > 0.0 ? (time - pose_time_).seconds() / motion_s_ : 0.0;
+  const ViewPose going_on = composed({so3_exp(ratio * so3_log(motion_.R_C_V)), ratio * motion_.t_C_V}, T_C_V_);
+  const auto guess = guess_pose(map_, lens_, pyramid[0], going_on, wide);
+  if (!guess) return std::nullopt;
+  const double way = (guess->centre() - T_C_V_.centre()).norm();
+  if (way > kWayBeyond * ratio * motion_.t_C_V.norm() + kWaySlack * median_depth_) return std::nullopt;
+  std::vector<Track> followed =
+      rematch(map_, {}, pyramid, *guess, lens_.camera(), {options_.max_tracks, kRescueMiss_px});
+  MotionSolution s = locate_camera(*guess, time, followed);
+  if (s.inliers < kRelocaliseInliers) return std::nullopt;
+  followed = rematch(map_, {}, pyramid, s.T_C_V, lens_.camera(), {options_.max_tracks, kSureMiss_px});
+  s = locate_camera(s.T_C_V, time, followed);
+  const bool sure =
+      s.inliers >= kRelocaliseInliers && s.inliers >= kRelocaliseShare * static_cast<double>(followed.size());
+  if (!sure) return std::nullopt;
+  const double keyframes = way / (median_depth_ * kKeyframeFlow_rad);
+  TrackedPose pose = accept(time, pyramid, std::move(followed), s);
+  pose.keyframe_share = std::max(pose.keyframe_share, keyframes);
+  pose.relocalised = true;
+  return pose;
+}
+
+TrackedPose MapTracker::accept(DeviceTime time, const Pyramid& pyramid, std::vector<Track> followed,
+                               const MotionSolution& s) {
   update_gate(s);
   update_motion(s.T_C_V, time);
   tracks_ = std::move(followed);

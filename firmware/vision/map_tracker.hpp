@@ -26,6 +26,7 @@ struct TrackedPose {
   Matrix6d covariance = Matrix6d::Zero();  // of this pose against the map; step of moved()
   // How much of the way from one key frame to the next was made since the pose before.
   double keyframe_share = 0.0;
+  bool relocalised = false;  // nothing is known of the way since the pose before
 };
 
 class MapTracker {
@@ -37,6 +38,10 @@ class MapTracker {
 
   // The next frame. No value: the pose was not found; the frame is then as if it had never been.
   [[nodiscard]] std::optional<TrackedPose> on(DeviceTime time, const Pyramid& pyramid);
+
+  // Likewise after a gap, when the last pose tells little: by descriptors, then as on(). Sterner than on(): a wrong
+  // place would be worse than a new segment.
+  [[nodiscard]] std::optional<TrackedPose> relocalise(DeviceTime time, const Pyramid& pyramid);
 
   // drift_per_keyframe() of the map a few frames ago, if ever it was known.
   [[nodiscard]] const std::optional<Matrix6d>& drift() const { return drift_; }
@@ -55,6 +60,8 @@ class MapTracker {
   [[nodiscard]] std::vector<cv::Point2f> predict_tracks(const ViewPose& T_C_V) const;
   [[nodiscard]] MotionSolution locate_camera(const ViewPose& predicted, DeviceTime time,
                                              std::vector<Track>& followed) const;
+  // Goes on from a pose that was found.
+  TrackedPose accept(DeviceTime time, const Pyramid& pyramid, std::vector<Track> followed, const MotionSolution& s);
   // Median, without what rotation explains, in units of what makes a key frame.
   [[nodiscard]] double flow_since_keyframe() const;
   void rematch_tracks(const Pyramid& pyramid);

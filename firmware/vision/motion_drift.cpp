@@ -14,7 +14,7 @@
 namespace rfmvo {
 namespace {
 
-constexpr double kSlack_s = 0.02;      // of the horizon: frames do not fall on it
+constexpr double kSlack_s = 0.02;       // of the horizon: frames do not fall on it
 constexpr std::size_t kMinPoints = 20;  // twice as many as unknowns of a motion, at least
 constexpr double kBundleHuber_px = 1.0;
 constexpr double kTinyDamping = 1e-10;

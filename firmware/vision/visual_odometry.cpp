@@ -18,7 +18,10 @@ namespace {
 constexpr int kGoodInliers = 30;  // fewer: degraded
 constexpr double kGoodInlierShare = 0.6;
 constexpr double kGoodSigma = 0.01;  // of the position, over the median depth: above, degraded
-constexpr double kHold_s = 0.25;     // without a pose, then the map is given up ("lost within 0.3 s")
+constexpr double kHold_s = 0.25;     // without a pose, then a new start is tried, too
+// The map is kept as long as most of what it knows may still be in view: 1.5 m at walking speed.
+constexpr double kRelocalise_s = 1.5;
+constexpr double kGap_s = 0.1;  // since the last pose: a shorter one needs no descriptors
 // Until the drift is known, of the pose's covariance against the map, for a key frame; later it was 2 to 10.
 constexpr double kFirstDrift = 7.0;
 constexpr std::size_t kMinStartTracks = 30;  // fewer after a loss: still lost, there is nothing to start with
@@ -60,6 +63,7 @@ struct VisualOdometry::Impl {
   CameraPose stay(DeviceTime time);
   CameraPose without_pose(DeviceTime time);
   void lose();
+  void give_up();
   void settle(bool segment_ends);
   [[nodiscard]] Matrix6d motion_covariance(const TrackedPose& pose, double seconds) const;
 
@@ -67,6 +71,7 @@ struct VisualOdometry::Impl {
   const MapTrackerOptions options;
   Initialiser initialiser;
   std::optional<MapTracker> tracker;  // once there is a map
+  bool lost = false;                  // the tracker has not known where it is for a while
   bool was_lost = false;
   std::uint32_t segment = 0;
   std::vector<Track> tracks;  // before there is a map
@@ -83,7 +88,7 @@ struct VisualOdometry::Impl {
 // the motions of about a second is to be the covariance of the whole: each has its share of the scatter by time.
 Matrix6d VisualOdometry::Impl::motion_covariance(const TrackedPose& pose, double seconds) const {
   const Matrix6d drift = tracker->drift().value_or(kFirstDrift * pose.covariance);
-  const double scatter_share = std::clamp(seconds / kDriftHorizon_s, 0.0, 1.0);
+  const double scatter_share = pose.relocalised ? 1.0 : std::clamp(seconds / kDriftHorizon_s, 0.0, 1.0);
   return scatter_share * (pose.covariance + previous_covariance) + pose.keyframe_share * drift;
 }
 
@@ -94,23 +99,34 @@ void VisualOdometry::Impl::settle(bool segment_ends) {
   }
 }
 
-// The scale dies with the map: what starts after it is another segment.
+// The map may still be found again; meanwhile another is begun.
 void VisualOdometry::Impl::lose() {
-  settle(true);
-  newest.reset();
+  lost = true;
   last_had_pose = false;
-  next_landmark = tracker->next_landmark();
   lens = tracker->lens();
-  tracker.reset();
-  ++segment;
-  was_lost = true;
+  next_landmark = tracker->next_landmark();
   tracks.clear();
   previous.clear();
   initialiser.restart();
 }
 
+// The scale dies with the map: what starts after it is another segment.
+void VisualOdometry::Impl::give_up() {
+  settle(true);
+  newest.reset();
+  lens = tracker->lens();
+  tracker.reset();
+  ++segment;
+  lost = false;
+  was_lost = true;
+}
+
 CameraPose VisualOdometry::Impl::without_pose(DeviceTime time) {
-  if (tracker && (time - tracker->pose_time()).seconds() >= kHold_s) lose();
+  if (tracker) {
+    const double since_s = (time - tracker->pose_time()).seconds();
+    if (since_s >= kHold_s && !lost) lose();
+    if (since_s >= kRelocalise_s) give_up();
+  }
   CameraPose pose;
   pose.time = time;
   pose.segment = segment;
@@ -131,7 +147,9 @@ CameraPose VisualOdometry::Impl::start(DeviceTime time, Pyramid pyramid) {
   auto map = initialiser.on(time, pyramid, tracks);
   if (!map) return pose;
 
+  if (tracker) give_up();
   initialiser.restart();
+  pose.segment = segment;
   for (const auto& [id, landmark] : map->landmarks) pose.inliers += landmark.located;
   pose.T_V_C = to_unscaled(map->keyframes.back().T_C_V);
   pose.status = VoStatus::kTracking;
@@ -155,9 +173,11 @@ CameraPose VisualOdometry::Impl::stay(DeviceTime time) {
 }
 
 CameraPose VisualOdometry::Impl::track(DeviceTime time, const Pyramid& pyramid) {
-  const auto found = tracker->on(time, pyramid);
+  auto found = lost ? std::nullopt : tracker->on(time, pyramid);
+  if (!found && (time - tracker->pose_time()).seconds() > kGap_s) found = tracker->relocalise(time, pyramid);
   last_had_pose = found.has_value();
-  if (!found) return without_pose(time);
+  if (!found) return lost ? start(time, pyramid) : without_pose(time);
+  lost = false;
   CameraPose pose;
   pose.time = time;
   pose.segment = segment;

@@ -50,7 +50,10 @@ TEST_P(ShelfDrive, IsTrackedToATenthOfAPercent) {
   EXPECT_LE(figures->ate_sim3_percent(), 0.12);
   EXPECT_LE(figures->step_noise_m, 0.001);
   ASSERT_TRUE(figures->half_scale_median.has_value());
-  EXPECT_LE(*figures->half_scale_median, 0.007);
+  EXPECT_LE(*figures->half_scale_median, 0.005);
+  ASSERT_TRUE(figures->nees.has_value());
+  EXPECT_GE(*figures->nees, 0.5);
+  EXPECT_LE(*figures->nees, 2.0);
   std::size_t with_pose = 0;
   for (const CameraPose& p : d.run.poses) {
     with_pose += odometry::has_pose(p);
