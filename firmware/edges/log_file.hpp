@@ -60,8 +60,7 @@ class LogFileReader {
   [[nodiscard]] std::string where(std::int64_t offset) const;
 
  private:
-  LogFileReader(std::string path, std::FILE* file, std::int64_t size)
-      : path_(std::move(path)), file_(file), size_(size) {}
+  LogFileReader(std::string path, std::FILE* file, std::int64_t size) : path_(std::move(path)), file_(file), size_(size) {}
 
   std::string path_;
   std::FILE* file_;
