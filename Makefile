@@ -40,30 +40,30 @@ demo-live: build
 .PHONY: demo-live-files
 demo-live-files: demo/frames/times.txt
 	@host/live_demo.sh build/release aisle 1 demo/frames demo/live
-	@$(rfmvo) evaluate demo/live/result.lcmlog --truth demo/live/truth --json demo/live/evaluation.json \
+	@$(rfmvo) evaluate demo/live/result.lcmlog --truth demo/live/truth --force --json demo/live/evaluation.json \
 	  >demo/live/evaluation.txt
-	@$(rfmvo) report demo/live/result.lcmlog --truth demo/live/truth --out demo/live/report.html
+	@$(rfmvo) report demo/live/result.lcmlog --truth demo/live/truth --force --out demo/live/report.html
 
 demo/frames/times.txt: $(rfmvo)
 	@mkdir -p demo/frames
-	$(rfmvo) simulate --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
+	$(rfmvo) simulate --force --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
 
 demo-files: demo/report.html
 
 demo/run.lcmlog: $(rfmvo)
 	@mkdir -p demo
-	$(rfmvo) simulate --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth
+	$(rfmvo) simulate --force --scene aisle --seed 1 --out demo/run.lcmlog --truth demo/truth
 
 demo/result.lcmlog: demo/run.lcmlog $(rfmvo)
-	$(rfmvo) replay demo/run.lcmlog --out demo/result.lcmlog --json demo/replay.json
+	$(rfmvo) replay demo/run.lcmlog --out demo/result.lcmlog --json demo/replay.json --force
 
 demo/evaluation.txt: demo/result.lcmlog
 	$(rfmvo) evaluate demo/result.lcmlog --truth demo/truth --replay-json demo/replay.json \
-	  --json demo/evaluation.json >demo/evaluation.tmp
+	  --force --json demo/evaluation.json >demo/evaluation.tmp
 	@mv demo/evaluation.tmp $@
 
 demo/report.html: demo/evaluation.txt
-	$(rfmvo) report demo/result.lcmlog --truth demo/truth --out demo/report.html
+	$(rfmvo) report demo/result.lcmlog --truth demo/truth --force --out demo/report.html
 
 # The paper's evaluation as a page; IMAGES=DIR: on real frames, too.
 reproduce: build
