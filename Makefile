@@ -40,23 +40,23 @@ demo-offline: build
 
 demo/frames/times.txt: $(rfmvo)
 	@mkdir -p demo/frames
-	$(rfmvo) simulate --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
+	$(rfmvo) simulate --force --scene aisle --seed 1 --out demo/frames/run.lcmlog --truth demo/frames/truth --frames-to demo/frames
 
 demo/live/result.lcmlog: demo/frames/times.txt host/live_demo.sh build/release/firmware/rfmvod
 	host/live_demo.sh build/release aisle 1 demo/frames demo/live
 
 demo/live/report.html: demo/live/result.lcmlog
-	$(rfmvo) evaluate $< --truth demo/live/truth --json demo/live/evaluation.json >demo/live/evaluation.txt
-	$(rfmvo) report $< --truth demo/live/truth --out $@
+	$(rfmvo) evaluate $< --truth demo/live/truth --force --json demo/live/evaluation.json >demo/live/evaluation.txt
+	$(rfmvo) report $< --truth demo/live/truth --force --out $@
 
 demo/offline/result.lcmlog: demo/frames/times.txt
 	@mkdir -p demo/offline
-	$(rfmvo) replay demo/frames/run.lcmlog --out $@ --json demo/offline/replay.json
+	$(rfmvo) replay demo/frames/run.lcmlog --out $@ --force --json demo/offline/replay.json
 
 demo/offline/report.html: demo/offline/result.lcmlog
 	$(rfmvo) evaluate $< --truth demo/frames/truth --replay-json demo/offline/replay.json \
-	  --json demo/offline/evaluation.json >demo/offline/evaluation.txt
-	$(rfmvo) report $< --truth demo/frames/truth --out $@
+	  --force --json demo/offline/evaluation.json >demo/offline/evaluation.txt
+	$(rfmvo) report $< --truth demo/frames/truth --force --out $@
 
 # The paper's evaluation as a page; IMAGES=DIR: on real frames, too.
 reproduce: build
@@ -104,13 +104,12 @@ test-camera: packages
 	@rm -rf build/camera && mkdir -p build/camera && cp build/release/firmware/rfmvod build/camera/
 	@tests/boot/guest.sh build/camera tests/boot/camera_guest.sh
 
-# What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 # Half an hour of rendered driving through the odometry: resident memory minute by minute. Takes about as long.
 SOAK_MINUTES ?= 30
 soak: build
 	build/release/tests/rfmvo_odometry_soak --minutes $(SOAK_MINUTES)
 
-# What comes from outside, thrown at the codec, the journal reader and the configuration for so many seconds each.
+# What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30
 fuzz:
 	@cmake/install-packages.sh clang libclang-rt-14-dev

@@ -6,12 +6,15 @@
 
 int main(int argc, char** argv) {
   int exit_code = 0;
-  CLI::App app("Replay, simulate, evaluate and report runs of the RF and visual-odometry box", "rfmvo");
+  CLI::App app("Record, replay, look at, simulate and evaluate runs of the RF and visual-odometry box", "rfmvo");
   app.set_version_flag("--version", "rfmvo " RFMVO_VERSION);
   app.require_subcommand(1);
   rfmvo::add_simulate_command(app, exit_code);
   rfmvo::add_replay_command(app, exit_code);
   rfmvo::add_log_command(app, exit_code);
+  rfmvo::add_status_command(app, exit_code);
+  rfmvo::add_calibrate_command(app, exit_code);
+  rfmvo::add_view_command(app, exit_code);
   rfmvo::add_info_command(app, exit_code);
   rfmvo::add_diff_command(app, exit_code);
   rfmvo::add_evaluate_command(app, exit_code);
@@ -22,6 +25,7 @@ int main(int argc, char** argv) {
   rfmvo::add_reproduce_command(app, exit_code);
   rfmvo::add_vo_command(app, exit_code);
   rfmvo::add_reader_sim_command(app, exit_code);
+  rfmvo::add_manual_commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

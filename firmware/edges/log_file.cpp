@@ -15,15 +15,14 @@ namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 constexpr std::size_t kHeaderBytes = 28;
-constexpr std::size_t kMaxChannelBytes = 63;                   // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::size_t kMaxChannelBytes = 63;                     // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::int64_t kMaxDataBytes = std::int64_t{1} << 28;  // 256 MB; our own messages stay below 128 MB
 
 using Header = std::array<std::uint8_t, kHeaderBytes>;
 
 template <std::size_t Bytes>
 void put(Header& header, std::size_t offset, std::uint64_t value) {
-  for (std::size_t i = 0; i < Bytes; ++i)
-    header[offset + i] = static_cast<std::uint8_t>(value >> (8 * (Bytes - 1 - i)));
+  for (std::size_t i = 0; i < Bytes; ++i) header[offset + i] = static_cast<std::uint8_t>(value >> (8 * (Bytes - 1 - i)));
 }
 
 template <std::size_t Bytes>
@@ -71,8 +70,7 @@ void append_log_record(std::vector<std::uint8_t>& out, std::int64_t number, std:
 
 Result<std::unique_ptr<LogFileWriter>> LogFileWriter::create(const std::string& path) {
   std::error_code ignored;
-  if (path.empty() || std::filesystem::is_directory(path, ignored))
-    return unwritable(path, "it is a folder, not a file");
+  if (path.empty() || std::filesystem::is_directory(path, ignored)) return unwritable(path, "it is a folder, not a file");
   const int fd = ::open(temporary_of(path).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) return unwritable(path, std::strerror(errno));
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
@@ -125,7 +123,7 @@ Result<std::unique_ptr<LogFileReader>> LogFileReader::open(const std::string& pa
     return Error{missing ? ErrorCode::kNotFound : ErrorCode::kUnreadable,
                  missing ? "no such file" : std::string("cannot be read: ") + std::strerror(errno), path};
   }
-  struct stat info {};
+  struct stat info{};
   if (::fstat(::fileno(file), &info) != 0 || !S_ISREG(info.st_mode)) {
     (void)std::fclose(file);
     return Error{ErrorCode::kUnreadable, "not a regular file", path};

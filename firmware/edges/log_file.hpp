@@ -65,8 +65,7 @@ class LogFileReader {
   [[nodiscard]] std::int64_t offset() const { return offset_; }  // behind the last record
 
  private:
-  LogFileReader(std::string path, std::FILE* file, std::int64_t size)
-      : path_(std::move(path)), file_(file), size_(size) {}
+  LogFileReader(std::string path, std::FILE* file, std::int64_t size) : path_(std::move(path)), file_(file), size_(size) {}
 
   std::string path_;
   std::FILE* file_;

@@ -4,6 +4,7 @@
 
 #include "bound/bound_text.hpp"
 #include "commands/commands.hpp"
+#include "commands/overwrite.hpp"
 #include "commands/simulation_options.hpp"
 #include "commands/whole_file.hpp"
 
@@ -16,9 +17,11 @@ struct Arguments {
   std::optional<double> time_offset_sigma_s;
   bound::ReadChoice reads;
   std::string json;
+  bool force = false;
 };
 
 Status run(const Arguments& arguments) {
+  if (const Status s = check_free({arguments.json}, arguments.force); !s) return s;
   const auto world = bound::world_of(arguments.simulation, arguments.reads);
   if (!world) return world.error();
   bound::Settings unknown = arguments.settings, known = arguments.settings;
@@ -56,6 +59,7 @@ void add_bound_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", arguments->simulation.seed, "Of the simulated run")->capture_default_str();
   add_model_options(*command, *arguments);
   command->add_option("--json", arguments->json, "Write the numbers to this file, too");
+  add_force_option(*command, arguments->force);
   command->callback([arguments, &exit_code] {
     const Status status = run(*arguments);
     if (!status) std::fprintf(stderr, "rfmvo bound: %s\n", status.error().text().c_str());

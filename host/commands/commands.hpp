@@ -1,5 +1,6 @@
 // The subcommands of `rfmvo`. Each adds itself to the parser and, when chosen, runs and sets
-// exit_code: 0 done, 1 it failed (one line on stderr says why), 2 the command line is wrong, 3 (diff) they differ.
+// exit_code: 0 done, 1 it failed (one line on stderr says why), 2 the command line is wrong, 3 the answer is no (diff:
+// they differ; status: the box is not well).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,7 +18,13 @@ void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 void add_reader_sim_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
+void add_status_command(CLI::App& app, int& exit_code);
+void add_calibrate_command(CLI::App& app, int& exit_code);
+void add_view_command(CLI::App& app, int& exit_code);
 void add_info_command(CLI::App& app, int& exit_code);
 void add_diff_command(CLI::App& app, int& exit_code);
+
+// Last: it speaks of all others.
+void add_manual_commands(CLI::App& app);
 
 }  // namespace rfmvo

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands/commands.hpp"
+#include "commands/overwrite.hpp"
 #include "commands/whole_file.hpp"
 #include "edges/journal.hpp"
 #include "evaluate/evaluation_text.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 struct Options {
   std::string result, truth, json, replay_json;
+  bool force = false;
   std::string prefix = LcmConfig{}.prefix;
 };
 
@@ -25,6 +27,7 @@ Result<std::optional<double>> realtime_factor(const std::string& path) {
 }
 
 Status run(const Options& options) {
+  if (const Status s = check_free({options.json}, options.force); !s) return s;
   const auto estimates = read_estimates(options.result, options.prefix);
   if (!estimates) return estimates.error();
   const auto truth = simulate::read_truth(options.truth);
@@ -52,6 +55,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   command->add_option("--truth", options->truth, "Folder of the truth: tags.csv, trajectory.tum")->required();
   command->add_option("--json", options->json, "Write the numbers to this file, too");
   command->add_option("--replay-json", options->replay_json, "JSON of `rfmvo replay`, for the realtime factor");
+  add_force_option(*command, options->force);
   command->add_option("--prefix", options->prefix, "Prefix of the LCM channels")->capture_default_str();
   command->callback([options, &exit_code] {
     const Status status = run(*options);

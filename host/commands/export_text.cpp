@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "rf/epc_uri.hpp"
 
@@ -55,6 +56,35 @@ std::string to_tags_csv(const evaluate::LastEstimates& last) {
     fmt::format_to(std::back_inserter(text), ",{},{},{}\n", tag.reads, tag.segment, epc_tag_uri(epc).value_or(""));
   }
   return text;
+}
+
+std::string to_tags_json(const evaluate::LastEstimates& last) {
+  using Json = nlohmann::ordered_json;
+  const auto array_of = [](const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); };
+  const auto rows_of = [&](const Eigen::Matrix3d& m) {
+    return Json::array({array_of(m.row(0)), array_of(m.row(1)), array_of(m.row(2))});
+  };
+  Json features = Json::array();
+  for (const auto& [epc, tag] : last.tags) {
+    Json properties{{"epc", epc.hex()}};
+    const auto uri = epc_tag_uri(epc);
+    properties["uri"] = uri ? Json(*uri) : Json(nullptr);
+    properties["status"] = evaluate::label_of(tag.status);
+    properties["reads"] = tag.reads;
+    Json geometry = nullptr;
+    if (evaluate::is_located(tag)) {
+      geometry = {{"type", "Point"}, {"coordinates", array_of(tag.p_W_X_m)}};
+      properties["covariance_m2"] = rows_of(tag.covariance_m2);
+      properties["hypotheses"] = Json::array();
+      for (const TagHypothesis& h : tag.hypotheses)
+        properties["hypotheses"].push_back({{"position_m", array_of(h.p_W_X_m)}, {"weight", h.weight}});
+    }
+    features.push_back({{"type", "Feature"}, {"id", epc.hex()}, {"geometry", geometry}, {"properties", properties}});
+  }
+  const Json json{{"type", "FeatureCollection"},
+                  {"frame", "W: metres; x forward, y left, z up of the cart where it started"},
+                  {"features", features}};
+  return json.dump(2) + "\n";
 }
 
 }  // namespace rfmvo

@@ -15,4 +15,8 @@ namespace rfmvo {
 // triangle (m^2), hdop, reads, segment. A tag that is not located has empty numbers.
 [[nodiscard]] std::string to_tags_csv(const evaluate::LastEstimates& last);
 
+// A FeatureCollection as of GeoJSON (RFC 7946), but that coordinates are metres in W, not degrees: one point a tag,
+// null where it is not located; properties: epc, uri, status, covariance, hypotheses, reads.
+[[nodiscard]] std::string to_tags_json(const evaluate::LastEstimates& last);
+
 }  // namespace rfmvo

@@ -12,14 +12,16 @@ namespace rfmvo {
 
 class JsonOutput {
  public:
-  // `this` must outlive the parsing.
-  void add_to(CLI::App& command);
+  // `this`, and `force`, must outlive the parsing. Without `force` the command gets a --force for FILE.
+  void add_to(CLI::App& command, const bool* force = nullptr);
   [[nodiscard]] bool on_stdout() const { return path_ == "-"; }
   // Nothing if nobody asked.
   [[nodiscard]] Status write(std::string_view json) const;
 
  private:
   std::string path_;
+  bool own_force_ = false;
+  const bool* force_ = &own_force_;
 };
 
 }  // namespace rfmvo

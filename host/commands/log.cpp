@@ -116,7 +116,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration-s", options->duration_s, "End after this time; default: at Ctrl-C")
       ->check(CLI::PositiveNumber);
   command->add_flag("--force", options->series.overwrite, "Overwrite a recording of this name");
-  options->json.add_to(*command);
+  options->json.add_to(*command, &options->series.overwrite);
   command->callback([options, &exit_code] {
     try {
       options->recorder.channels = std::regex(options->channels);

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "commands/commands.hpp"
+#include "commands/overwrite.hpp"
 #include "commands/progress_line.hpp"
 #include "commands/simulation_options.hpp"
 #include "commands/whole_file.hpp"
@@ -19,9 +20,11 @@ constexpr std::size_t kMaxJobs = 256;
 struct Arguments {
   montecarlo::Options options;
   std::string from = "poses", config, json;
+  bool force = false;
 };
 
 Status run(Arguments& arguments) {
+  if (const Status s = check_free({arguments.json}, arguments.force); !s) return s;
   montecarlo::Options& options = arguments.options;
   options.own_odometry = arguments.from == "frames";
   if (!arguments.config.empty()) {
@@ -70,6 +73,7 @@ void add_montecarlo_command(CLI::App& app, int& exit_code) {
   command->add_option("--config", arguments->config, "TOML file over the default configuration")
       ->check(CLI::ExistingFile);
   command->add_option("--json", arguments->json, "Write the numbers to this file, too");
+  add_force_option(*command, arguments->force);
   command->callback([arguments, &exit_code] {
     const Status status = run(*arguments);
     if (!status) std::fprintf(stderr, "rfmvo montecarlo: %s\n", status.error().text().c_str());

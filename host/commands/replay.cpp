@@ -1,5 +1,5 @@
-// rfmvo replay: the recorded events through the same loop as on the box. Same journal, same
-// configuration, same build: same bytes.
+// rfmvo replay: the recorded events through the same loop as on the box (same journal, same configuration, same build:
+// same bytes), or the recorded messages onto the bus.
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/overwrite.hpp"
+#include "commands/progress_line.hpp"
 #include "commands/whole_file.hpp"
 #include "config/config_table.hpp"
 #include "edges/journal.hpp"
@@ -17,6 +19,7 @@
 #include "edges/stop_signal.hpp"
 #include "edges/tee.hpp"
 #include "edges/toml_files.hpp"
+#include "play/bus_door.hpp"
 
 namespace rfmvo {
 namespace {
@@ -27,6 +30,11 @@ struct Options {
   std::string speed = "max";
   std::vector<std::string> settings;
   std::string prefix = LcmConfig{}.prefix;
+  std::string bus;  // not empty: played onto it
+  std::string channels = ".*";
+  double start_s = 0.0, end_s = 0.0;
+  play::PlaySettings play;
+  bool force = false;
 };
 
 struct Figures {
@@ -92,8 +100,30 @@ Status check_not_itself(const Options& options) {
   return Error{ErrorCode::kUnwritable, "is the journal itself", options.out};
 }
 
+// Shows on the terminal how far the events have come.
+class ShownSource : public EventSource {
+ public:
+  ShownSource(EventSource& inner, const JournalSummary& journal) : inner_(inner), journal_(journal) {}
+  [[nodiscard]] Result<std::optional<Event>> next() override {
+    auto event = inner_.next();
+    if (event && event.value()) {
+      const double all_s = (journal_.last - journal_.first).seconds();
+      const double done_s = (time_of(*event.value()) - journal_.first).seconds();
+      char text[64] = {};
+      (void)std::snprintf(text, sizeof text, "%.1f of %.1f s", done_s, all_s);
+      line_.show_share(all_s > 0.0 ? done_s / all_s : 0.0, text);
+    }
+    return event;
+  }
+
+ private:
+  EventSource& inner_;
+  const JournalSummary& journal_;
+  ProgressLine line_{""};
+};
+
 // Runs the loop and closes the result.
-Status run_to_file(const Options& options, const Config& config, double speed) {
+Status run_to_file(const Options& options, const JournalSummary& journal, const Config& config, double speed) {
   auto reader = JournalReader::open(options.journal, options.prefix, {config.estimator.pose_source == "frames"});
   if (!reader) return reader.error();
   auto result = LogWriter::create(options.out, options.prefix);
@@ -110,7 +140,8 @@ Status run_to_file(const Options& options, const Config& config, double speed) {
   ReconfiguredSource configured(*reader.value(), config, std::nullopt);
   PacedSource paced(configured, speed > 0.0 ? speed : 1.0);
   EventSource& chosen = speed > 0.0 ? static_cast<EventSource&>(paced) : configured;
-  StoppableSource events(chosen, stop_requested);
+  ShownSource shown(chosen, journal);
+  StoppableSource events(shown, stop_requested);
   StartToResult start_to_result(*result.value());
   Pipeline pipeline;
   if (const Status s = run(events, &start_to_result, pipeline, out); !s) return s;
@@ -120,6 +151,7 @@ Status run_to_file(const Options& options, const Config& config, double speed) {
 
 Result<Figures> replay(const Options& options, double speed) {
   if (const Status s = check_not_itself(options); !s) return s.error();
+  if (const Status s = check_free({options.out, options.json}, options.force); !s) return s.error();
   const auto journal = summarise_journal(options.journal, options.prefix);
   if (!journal) return journal.error();
   const auto config = effective_config(journal.value(), options);
@@ -127,7 +159,7 @@ Result<Figures> replay(const Options& options, double speed) {
   if (const Status s = check_pose_source(journal.value(), config.value(), options.journal); !s) return s.error();
   const auto wall = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  if (const Status s = run_to_file(options, config.value(), speed); !s) return s.error();
+  if (const Status s = run_to_file(options, journal.value(), config.value(), speed); !s) return s.error();
   Figures figures;
   figures.events = journal.value().events;
   figures.span_s = (journal.value().last - journal.value().first).seconds();
@@ -161,23 +193,85 @@ int replay_and_tell(const Options& options, double speed) {
   return 0;
 }
 
+// Onto the bus, at the recorded times.
+Status play_onto_bus(const Options& options) {
+  if (const auto log = LogFileReader::open(options.journal); !log) return log.error();
+  auto opened = play::BusDoor::create(options.bus);
+  if (!opened) return opened.error();
+  std::unique_ptr<play::BusDoor> door = std::move(opened).value();
+  catch_stop_signals();
+  std::fprintf(stderr, "playing %s onto %s%s\n", options.journal.c_str(), options.bus.c_str(),
+               door->has_keys() ? "; space: pause, s: step, q: quit" : "");
+  const auto figures = play::play({options.journal}, options.play, *door);
+  door.reset();  // the terminal as it was
+  if (!figures) return figures.error();
+  if (!options.json.empty()) {
+    const nlohmann::ordered_json json = {{"messages", figures.value().sent}, {"rounds", figures.value().rounds}};
+    if (const Status s = write_whole_file(options.json, json.dump(2) + "\n"); !s) return s;
+  }
+  std::printf("%llu messages\n", static_cast<unsigned long long>(figures.value().sent));
+  return Done{};
+}
+
+// What the parser cannot say itself.
+void check_play(Options& options) {
+  if (options.speed == "max") throw CLI::ValidationError("--speed", "expects a number with --bus");
+  options.play.speed = speed_of(options.speed);
+  options.play.from = Duration::from_seconds(options.start_s);
+  if (options.end_s > 0.0) options.play.to = Duration::from_seconds(options.end_s);
+  if (options.play.to < options.play.from) throw CLI::ValidationError("--end-s", "is before --start-s");
+  try {
+    options.play.channels = std::regex(options.channels);
+  } catch (const std::regex_error&) {
+    throw CLI::ValidationError("--channel", "\"" + options.channels + "\" is no regular expression");
+  }
+}
+
+void add_bus_options(CLI::App& command, Options& options, CLI::Option* out) {
+  auto* bus = command.add_option("--bus", options.bus,
+                                 "Play the recorded messages onto this LCM bus instead, at their times (no estimator); "
+                                 "without URL: " +
+                                     LcmConfig{}.url);
+  bus->expected(0, 1)->default_str(LcmConfig{}.url)->type_name("[URL]")->excludes(out);
+  const auto only = [&](CLI::Option* option) { option->needs(bus); };
+  only(command.add_option("--start-s", options.start_s, "From here on, seconds since the log's first message")
+           ->check(CLI::NonNegativeNumber));
+  only(command.add_option("--end-s", options.end_s, "Up to here")->check(CLI::PositiveNumber));
+  only(command.add_option("--channel", options.channels, "Only channels whose name matches this regular expression"));
+  only(command.add_flag("--loop", options.play.loop, "Again and again, until Ctrl-C"));
+  only(command.add_flag("--paused", options.play.paused, "Begin paused: space goes on, s sends one message"));
+}
+
 }  // namespace
 
 void add_replay_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("replay", "Run the estimator over a recorded or simulated journal");
   command->add_option("journal", options->journal, "Journal (.lcmlog)")->required();
-  command->add_option("--out", options->out, "Result log to write (.lcmlog)")->required();
+  auto* out = command->add_option("--out", options->out, "Result log to write (.lcmlog)");
+  add_bus_options(*command, *options, out);
   command->add_option("--estimator", options->estimator, "joint or paper")->check(CLI::IsMember({"joint", "paper"}));
-  command->add_option("--from", options->from, "frames: own visual odometry; poses: recorded camera poses (default: frames if there are any)")
+  command
+      ->add_option("--from", options->from,
+                   "frames: own visual odometry; poses: recorded camera poses (default: frames if there are any)")
       ->check(CLI::IsMember({"frames", "poses"}));
   command->add_option("--config", options->config, "TOML file over the journal's own configuration");
   command->add_option("--set", options->settings, "One setting: section.key=value")->allow_extra_args(false);
-  command->add_option("--speed", options->speed, "max, or a factor such as 1.0: paced, and published on the LCM bus")
-      ->capture_default_str();
+  add_force_option(*command, options->force);
+  auto* speed_option = command->add_option(
+      "--speed", options->speed, "max, or a factor such as 1.0: paced, and published on the LCM bus; with --bus 1.0");
   command->add_option("--json", options->json, "Write realtime factor and counts to this file");
   command->add_option("--prefix", options->prefix, "Prefix of the LCM channels")->capture_default_str();
-  command->callback([options, &exit_code] {
+  command->callback([options, speed_option, &exit_code] {
+    if (!options->bus.empty()) {
+      if (speed_option->empty()) options->speed = "1.0";
+      check_play(*options);
+      const Status played = play_onto_bus(*options);
+      if (!played) std::fprintf(stderr, "rfmvo replay: %s\n", played.error().text().c_str());
+      exit_code = played ? 0 : 1;
+      return;
+    }
+    if (options->out.empty()) throw CLI::RequiredError("--out or --bus");
     const double speed = speed_of(options->speed);
     for (const std::string& setting : options->settings) check_setting(setting);
     exit_code = replay_and_tell(*options, speed);

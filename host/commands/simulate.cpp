@@ -3,10 +3,12 @@
 #include <memory>
 
 #include "commands/commands.hpp"
+#include "commands/frame_folder.hpp"
+#include "commands/overwrite.hpp"
+#include "commands/progress_line.hpp"
 #include "commands/simulation_options.hpp"
 #include "config/config.hpp"
 #include "edges/journal.hpp"
-#include "commands/frame_folder.hpp"
 #include "simulate/simulation.hpp"
 
 namespace rfmvo {
@@ -14,13 +16,14 @@ namespace {
 
 struct Arguments {
   simulate::Options options;
-  bool no_frames = false;
+  bool no_frames = false, force = false;
   double start_at_s = 0.0;  // since 1970; 0: the simulation's own
   std::string out, truth_directory, frames_directory, frames_to;
   std::string prefix = LcmConfig{}.prefix;
 };
 
 Status run(const Arguments& arguments) {
+  if (const Status s = check_free({arguments.out}, arguments.force); !s) return s;
   if (!arguments.frames_directory.empty()) {
     const Status s = simulate::write_image_folder(arguments.options, arguments.frames_directory);
     if (!s.ok() || arguments.out.empty()) return s;
@@ -34,7 +37,11 @@ Status run(const Arguments& arguments) {
     if (!made.ok()) return made.error();
     folder = std::move(made).value();
   }
+  const ProgressLine line("");
+  std::optional<DeviceTime> first;
   const auto truth = simulate::simulate(arguments.options, [&](const Event& event) -> Status {
+    if (!first) first = time_of(event);
+    line.say(std::to_string((time_of(event) - *first).ns / 1'000'000'000) + " s simulated");
     if (folder)
       if (Status s = folder->write(event); !s.ok()) return s;
     return log->write(event);
@@ -62,10 +69,12 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
                       "Write the pictures as a folder: images/, times.txt, calib.txt, groundtruth.txt");
   command->add_option("--start-at", arguments->start_at_s, "Time of the first frame, seconds since 1970")
       ->check(CLI::Range(1.0, 9e9));
-  command->add_option("--frames-to", arguments->frames_to,
-                      "Write the frames to this folder too, with calibration and a configuration that plays them live")
+  command
+      ->add_option("--frames-to", arguments->frames_to,
+                   "Write the frames to this folder too, with calibration and a configuration that plays them live")
       ->needs(out);
   command->add_flag("--no-frames", arguments->no_frames, "Camera poses only, no images");
+  add_force_option(*command, arguments->force);
   command->add_option("--prefix", arguments->prefix, "Of the LCM channels")->capture_default_str();
   command->callback([arguments, &exit_code] {
     if (arguments->out.empty() && arguments->frames_directory.empty())

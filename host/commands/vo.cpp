@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "commands/commands.hpp"
+#include "commands/overwrite.hpp"
+#include "commands/progress_line.hpp"
 #include "commands/whole_file.hpp"
 #include "edges/camera_file.hpp"
 #include "edges/image_folder.hpp"
@@ -24,6 +26,7 @@ using odometry::Run;
 
 struct Options {
   std::string input, camera, truth, tum, settled_tum, json, view;
+  bool force = false;
   std::vector<std::string> settings;
   std::string prefix = LcmConfig{}.prefix;
   int threads = 1;
@@ -88,7 +91,10 @@ Result<Run> run(const Options& options) {
     if (!created) return created.error();
     view = std::move(created).value();
   }
-  const auto watch = [&view](const Frame& frame, const CameraPose& pose, const VisualOdometry& vo) -> Status {
+  const ProgressLine line("");
+  std::size_t frames = 0;
+  const auto watch = [&](const Frame& frame, const CameraPose& pose, const VisualOdometry& vo) -> Status {
+    line.say(std::to_string(++frames) + " frames");
     return view ? view->add(frame, pose, vo) : Status(Done{});
   };
   odometry::RunOptions how{options.settings, std::nullopt};
@@ -118,6 +124,8 @@ void print(const nlohmann::ordered_json& figures, const std::string& before = ""
 }
 
 Status run_command(const Options& options) {
+  const Status free = check_free({options.tum, options.settled_tum, options.json, options.view}, options.force);
+  if (!free) return free;
   cv::setNumThreads(options.threads);
   const auto truth = read_truth(truth_file(options));
   if (!truth) return truth.error();
@@ -157,6 +165,7 @@ void add_vo_command(CLI::App& app, int& exit_code) {
   command->add_option("--threads", options->threads, "Of the image processing; the result does not depend on it")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  add_force_option(*command, options->force);
   command->add_option("--prefix", options->prefix, "Prefix of the LCM channels")->capture_default_str();
   command->callback([options, &exit_code] {
     const Status status = run_command(*options);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.hpp"
+#include "report/map_view.hpp"
 #include "report/plots.hpp"
 #include "report/script.hpp"
 
@@ -12,7 +13,8 @@ namespace rfmvo::report {
 namespace {
 
 constexpr double kChi2_95_2dof = 5.991464547107979;  // 95 % of chi-square, 2 degrees of freedom
-constexpr int kEllipsePoints = 48;
+constexpr int kEllipsePoints = 48, kManyEllipsePoints = 16;
+constexpr std::size_t kManyTags = 300;  // from here on outlines only, and coarser: the page must stay quick
 constexpr double kMargin_m = 0.4;       // around everything shown
 constexpr std::size_t kMaxLabels = 80;  // more numbers than that hide the map
 constexpr double kFilledMax_m = 1.0;    // larger ellipses are outlines only
@@ -20,25 +22,6 @@ constexpr double kFilledMax_m = 1.0;    // larger ellipses are outlines only
 constexpr double kReach_m = 6.0;  // other positions farther than this from everything else stay outside
 constexpr int kWidth = 1000;
 constexpr double kLeft_px = 85, kRight_px = 15, kTop_px = 12, kBottom_px = 68;
-
-struct View {
-  int right = 0, up = 1;  // coordinates of W
-  const char* name = "";
-  const char* title = "";
-
-  [[nodiscard]] Eigen::Vector2d operator()(const Eigen::Vector3d& p) const { return {p[right], p[up]}; }
-};
-
-struct Box {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = Eigen::Vector2d::Constant(-1e300);
-
-  void add(const Eigen::Vector2d& p) {
-    if (!p.allFinite()) return;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  [[nodiscard]] bool empty() const { return low.x() > high.x(); }
-};
 
 std::string point(const Eigen::Vector2d& p) { return fmt::format("{:.4f} {:.4f}\n", p.x(), p.y()); }
 
@@ -49,14 +32,14 @@ Trust trust_of(TagStatus status) {
   return status == TagStatus::kMoved || status == TagStatus::kStale ? Trust::kStale : Trust::kDoubt;
 }
 
-std::string ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covariance) {
+std::string ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covariance, int points) {
   if (!covariance.allFinite()) return "";
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
   if (!(solver.eigenvalues()[0] > 0.0)) return "";
   const Eigen::Matrix2d axes = solver.eigenvectors() * (kChi2_95_2dof * solver.eigenvalues()).cwiseSqrt().asDiagonal();
   std::string text;
-  for (int i = 0; i <= kEllipsePoints; ++i) {
-    const double angle = kTwoPi * i / kEllipsePoints;
+  for (int i = 0; i <= points; ++i) {
+    const double angle = kTwoPi * i / points;
     text += point(centre + axes * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return text + "\n";
@@ -74,11 +57,7 @@ struct Sketch {
   }
 };
 
-Eigen::Matrix2d marginal(const Eigen::Matrix3d& c, const View& view) {
-  Eigen::Matrix2d m;
-  m << c(view.right, view.right), c(view.right, view.up), c(view.up, view.right), c(view.up, view.up);
-  return m;
-}
+Eigen::Matrix2d marginal(const Eigen::Matrix3d& c, const View& view) { return view.onto * c * view.onto.transpose(); }
 
 std::string path_data(const std::vector<Eigen::Vector3d>& path, const View& view) {
   constexpr std::size_t kMaxPoints = 4000;  // more cannot be seen
@@ -110,6 +89,8 @@ Box extent(const ReportData& data, const View& view) {
   for (const auto& p : data.truth.path) box.add(view(p));
   for (const auto& [epc, p] : data.truth.tags) box.add(view(p));
   if (box.empty()) return box;
+  if (*view.right == '\0')
+    for (int axis = 0; axis < 3; ++axis) box.add(view(Eigen::Vector3d::Unit(axis)));
 
   const Box near = box;
   for (const TagEstimate& tag : data.tags) {
@@ -157,11 +138,12 @@ void add_hypotheses(const ReportData& data, Sketch& sketch) {
 void add_tags(const ReportData& data, Trust trust, const PlotColour& colour, const char* title, Sketch& sketch) {
   const View& view = sketch.view;
   std::string points, filled, outlines;
+  const bool many = data.tags.size() > kManyTags;
   for (const TagEstimate& tag : data.tags) {
     if (!evaluate::is_located(tag) || trust_of(tag.status) != trust) continue;
     const Eigen::Matrix2d covariance = marginal(tag.covariance_m2, view);
-    const std::string shape = ellipse(view(tag.p_W_X_m), covariance);
-    if (kChi2_95_2dof * covariance.trace() < kFilledMax_m * kFilledMax_m) filled += shape;
+    const std::string shape = ellipse(view(tag.p_W_X_m), covariance, many ? kManyEllipsePoints : kEllipsePoints);
+    if (!many && kChi2_95_2dof * covariance.trace() < kFilledMax_m * kFilledMax_m) filled += shape;
     outlines += shape;
     points += point(view(tag.p_W_X_m));
   }
@@ -199,14 +181,41 @@ void add_labels(const ReportData& data, Sketch& sketch) {
                                 kInk.gnuplot)});
 }
 
+// Numbers along axes that are not those of W would say nothing.
+std::string labels(const View& view) {
+  if (*view.right == '\0') return "unset border\nunset tics\nunset grid\n";
+  return fmt::format("set xlabel '{}'\nset ylabel '{}'\n", view.right, view.up);
+}
+
+// The directions of W, and how high each tag is above the plane of the start.
+void add_axes(const ReportData& data, Sketch& sketch) {
+  const View& view = sketch.view;
+  std::string stalks, cross, names;
+  for (const TagEstimate& tag : data.tags) {
+    if (!evaluate::is_located(tag)) continue;
+    const Eigen::Vector3d foot(tag.p_W_X_m.x(), tag.p_W_X_m.y(), 0.0);
+    stalks += point(view(tag.p_W_X_m)) + point(view(foot)) + "\n";
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d end = Eigen::Vector3d::Unit(axis);
+    cross += point(view(Eigen::Vector3d::Zero())) + point(view(end)) + "\n";
+    names += fmt::format("{:.4f} {:.4f} {}\n", view(end).x(), view(end).y(), "xyz"[axis]);
+  }
+  sketch.add({stalks, fmt::format("with lines lw 0.7 lc rgb '{}' notitle", kGrid.gnuplot)});
+  sketch.add({cross, fmt::format("with lines lw 1.2 lc rgb '{}' notitle", kInk.gnuplot)}, kInk, "━",
+             "1 m along x, y, z");
+  sketch.add(
+      {names, fmt::format("using 1:2:3 with labels offset character 0.8,0.4 tc rgb '{}' notitle", kInk.gnuplot)});
+}
+
 std::string ranges(const Plot& plot, const View& view, const Box& box) {
   const double w = plot.width, h = plot.height;
   return fmt::format(
       "set size ratio -1\nset key off\nset lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n"
-      "set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset xlabel '{} (m)'\nset ylabel '{} (m)'\n"
+      "set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n{}"
       "set xrange [{:.4f}:{:.4f}]\nset yrange [{:.4f}:{:.4f}]\n",
-      kLeft_px / w, 1.0 - kRight_px / w, kBottom_px / h, 1.0 - kTop_px / h, "xyz"[view.right], "xyz"[view.up],
-      box.low.x(), box.high.x(), box.low.y(), box.high.y());
+      kLeft_px / w, 1.0 - kRight_px / w, kBottom_px / h, 1.0 - kTop_px / h, labels(view), box.low.x(), box.high.x(),
+      box.low.y(), box.high.y());
 }
 
 // The plot's height follows from equal axes; what is too flat gets more room above and below.
@@ -230,6 +239,7 @@ std::optional<Plot> map(const ReportData& data, const View& view) {
   const int height = fit_height(box);
 
   Sketch sketch{.view = view, .script = {}, .legend = {}};
+  if (*view.right == '\0') add_axes(data, sketch);
   add_paths(data, sketch);
   add_hypotheses(data, sketch);
   add_tags(data, Trust::kGood, kGood, "tag, 95 % ellipse", sketch);
@@ -249,14 +259,20 @@ std::optional<Plot> map(const ReportData& data, const View& view) {
 
 }  // namespace
 
-std::optional<Plot> top_view(const ReportData& data) {
-  return map(data, {.right = 0, .up = 1, .name = "top", .title = "Map from above"});
-}
+std::optional<Plot> top_view(const ReportData& data) { return map(data, {.name = "top", .title = "Map from above"}); }
 
 std::optional<Plot> side_view(const ReportData& data) {
   const Box above = extent(data, {});
-  const int along = !above.empty() && (above.high - above.low).y() > (above.high - above.low).x() ? 1 : 0;
-  return map(data, {.right = along, .up = 2, .name = "side", .title = "Map from the side"});
+  const bool along_y = !above.empty() && (above.high - above.low).y() > (above.high - above.low).x();
+  return map(data, {.onto = axes(along_y ? 1 : 0, 2),
+                    .name = "side",
+                    .title = "Map from the side",
+                    .right = along_y ? "y (m)" : "x (m)",
+                    .up = "z (m)"});
+}
+
+std::optional<Plot> oblique_view(const ReportData& data) {
+  return map(data, {.onto = oblique(), .name = "oblique", .title = "Map in three dimensions", .right = "", .up = ""});
 }
 
 }  // namespace rfmvo::report

@@ -42,6 +42,17 @@ void add_histories(const std::vector<Estimate>& estimates, ReportData& data) {
   }
 }
 
+// HEALTH tells the number of faults and the last of them.
+void add_told_faults(const std::vector<Estimate>& estimates, ReportData& data) {
+  std::uint64_t told = 0;
+  for (const Estimate& estimate : estimates) {
+    const auto* health = std::get_if<Health>(&estimate);
+    if (health == nullptr || health->faults <= told) continue;
+    told = health->faults;
+    data.faults.push_back({health->time, "", health->last_fault});
+  }
+}
+
 // The page has ONE world: that of the segment with the longest path.
 void add_truth(const simulate::Truth& truth, ReportData& data) {
   const auto& segments = data.evaluation->trajectory.segments;
@@ -62,6 +73,7 @@ Result<ReportData> collect(const std::vector<Estimate>& estimates, const std::op
   data.last = evaluate::last_of(estimates);
   set_time_span(estimates, data);
   add_histories(estimates, data);
+  add_told_faults(estimates, data);
   for (const auto& [epc, tag] : data.last.tags) data.tags.push_back(tag);
   std::stable_partition(data.tags.begin(), data.tags.end(), evaluate::is_located);
   if (truth) {

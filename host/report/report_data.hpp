@@ -8,6 +8,7 @@
 
 #include "evaluate/evaluation.hpp"
 #include "evaluate/last_estimates.hpp"
+#include "report/journal_data.hpp"
 
 namespace rfmvo::report {
 
@@ -38,6 +39,8 @@ struct ReportData {
   std::map<Epc, std::vector<SigmaPoint>> sigma_history;
   std::optional<evaluate::Evaluation> evaluation;
   TrueInResult truth;
+  std::optional<JournalData> journal;
+  std::vector<Fault> faults;  // the journal's; without one, as HEALTH told of them
 };
 
 [[nodiscard]] Result<ReportData> collect(const std::vector<Estimate>& estimates,

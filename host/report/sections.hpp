@@ -11,5 +11,8 @@ namespace rfmvo::report {
 [[nodiscard]] std::string summary_cards(const ReportData& data);
 [[nodiscard]] std::string tag_table(const ReportData& data);
 [[nodiscard]] std::string health_table(const ReportData& data);
+[[nodiscard]] std::string fault_table(const ReportData& data);
+// What the plot of the residuals shows, with their size.
+[[nodiscard]] std::string residual_caption(const ReportData& data);
 
 }  // namespace rfmvo::report

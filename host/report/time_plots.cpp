@@ -10,8 +10,9 @@ namespace rfmvo::report {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 340;
-constexpr std::size_t kMaxPoints = 300;  // of one line; more cannot be seen
-constexpr double kShownSigma = 0.5;      // a scale less certain than 50 % is not worth the plot's range
+constexpr std::size_t kMaxPoints = 300;   // of one line; more cannot be seen
+constexpr std::size_t kMaxTagLines = 60;  // more would be a smear
+constexpr double kShownSigma = 0.5;       // a scale less certain than 50 % is not worth the plot's range
 constexpr double kCmPerM = 100.0;
 
 struct Range {
@@ -52,8 +53,13 @@ std::string scale_data(const ReportData& data) {
 
 double end_time_s(const ReportData& data) { return std::max(data.duration.seconds(), 1e-3); }
 
-// Median over the tags, of each tag's newest sigma, at the times of the first list.
-std::string median_sigma(const ReportData& data) {
+// The value below which this share of the sorted values lies.
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
+}
+
+// Over the tags, of each tag's newest sigma: time, 10 %, median, 90 %.
+std::string sigma_quantiles(const ReportData& data) {
   std::string text;
   for (std::size_t k = 0; k <= kMaxPoints; ++k) {
     const double time = end_time_s(data) * static_cast<double>(k) / kMaxPoints;
@@ -63,9 +69,10 @@ std::string median_sigma(const ReportData& data) {
                                           [](double t, const SigmaPoint& p) { return t < p.time_s; });
       if (after != history.begin()) sigmas.push_back((after - 1)->sigma_m);
     }
-    if (const auto summary = evaluate::summarise(sigmas)) {
-      text += fmt::format("{:.3f} {:.4g}\n", time, summary->median * kCmPerM);
-    }
+    if (sigmas.empty()) continue;
+    std::sort(sigmas.begin(), sigmas.end());
+    text += fmt::format("{:.3f} {:.4g} {:.4g} {:.4g}\n", time, quantile(sigmas, 0.1) * kCmPerM,
+                        evaluate::summarise(sigmas)->median * kCmPerM, quantile(sigmas, 0.9) * kCmPerM);
   }
   return text;
 }
@@ -122,18 +129,25 @@ std::optional<Plot> scale_over_time(const ReportData& data) {
 
 std::optional<Plot> tag_sigma_over_time(const ReportData& data) {
   std::string lines;
+  const bool many = data.sigma_history.size() > kMaxTagLines;
+  if (data.sigma_history.empty()) return std::nullopt;
   for (const auto& [epc, history] : data.sigma_history) {
+    if (many) break;
     const std::size_t step = history.size() / kMaxPoints + 1;
     for (std::size_t i = 0; i < history.size(); i += step) {
       lines += fmt::format("{:.3f} {:.4g}\n", history[i].time_s, history[i].sigma_m * kCmPerM);
     }
     lines += '\n';
   }
-  if (lines.empty()) return std::nullopt;
+  const std::string quantiles = sigma_quantiles(data);
   Script script;
+  if (many)
+    script.add({quantiles, fmt::format("using 1:2:4 with filledcurves fs transparent solid 0.2 noborder lc rgb '{}' "
+                                       "title '10 to 90 % of the tags'",
+                                       kGood.gnuplot)});
   script.add({lines, fmt::format("with lines lw 0.8 lc rgb '{}' title 'one tag'", kPath.gnuplot)});
   script.add(
-      {median_sigma(data), fmt::format("with lines lw 2.5 lc rgb '{}' title 'median of the tags'", kGood.gnuplot)});
+      {quantiles, fmt::format("using 1:3 with lines lw 2.5 lc rgb '{}' title 'median of the tags'", kGood.gnuplot)});
   Plot plot{.name = "sigma",
             .title = "Certainty of the tags over time",
             .width = kWidth,

@@ -128,6 +128,14 @@ TEST_F(Info, ATruncatedLogTellsWhatItHoldsAndWhereItEnds) {
   EXPECT_THAT(result.out, HasSubstr("RFMVO_TAG_READ"));
 }
 
+TEST_F(Info, JsonIsOverwrittenOnlyByForce) {
+  testing::write_journal(log_, testing::short_run(3));
+  const std::string command = "info " + in_quotes(log_) + " --json " + in_quotes(folder_ / "info.json");
+  EXPECT_EQ(testing::rfmvo(command).exit_code, 0);
+  expect_one_line(testing::rfmvo(command), "info.json: is there already; --force overwrites it");
+  EXPECT_EQ(testing::rfmvo(command + " --force").exit_code, 0);
+}
+
 TEST_F(Info, BadInputIsOneLine) {
   expect_one_line(testing::rfmvo("info /nowhere/x.lcmlog"), "/nowhere/x.lcmlog: no such file");
   expect_one_line(testing::rfmvo("info"), "log is required", 2);

@@ -144,7 +144,9 @@ TEST(UdpmDecoder, GarbageIsNoMessageAndNoLoss) {
         datagram[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(magic >> (8 * (3 - i)));
     }
     const auto message = decoder.on(random(), datagram);
-    if (message) EXPECT_LE(message->channel.size(), 63u);
+    if (message) {
+      EXPECT_LE(message->channel.size(), 63u);
+    }
   }
 }
 
