@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build deb crash-test test-camera demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera test-tsan demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -111,6 +111,12 @@ test-camera: packages
 	@rm -rf build/camera && mkdir -p build/camera && cp build/release/firmware/rfmvod build/camera/
 	@tests/boot/guest.sh build/camera tests/boot/camera_guest.sh
 
+# The threads of edges and daemon under ThreadSanitizer.
+test-tsan: packages
+	@cmake -S tests/tsan -B build/tsan -G Ninja $(CCACHE) >/dev/null
+	@cmake --build build/tsan -j $(JOBS)
+	@ctest --test-dir build/tsan --output-on-failure
+
 # What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30
 fuzz:
@@ -139,4 +145,4 @@ tidy: build
 
 # The Python environment and downloaded packages stay.
 clean:
-	rm -rf build/release build/asan build/clang build/arm64 build/fuzz demo reproduction
+	rm -rf build/release build/asan build/clang build/arm64 build/fuzz build/tsan build/deb demo reproduction
