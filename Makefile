@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build deb crash-test test-camera test-tsan demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera test-service test-tsan demo demo-files demo-live reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -97,6 +97,12 @@ deb: build
 	@rm -rf build/deb && cpack --config build/release/CPackConfig.cmake -B build/deb >/dev/null && rm -rf build/deb/_CPack_Packages
 	@lintian --fail-on error build/deb/*.deb
 	@ls -l build/deb/*.deb
+
+# The packages' life (install, upgrade, purge), and the service as systemd runs it, in a container. Root only.
+test-service: deb
+	@cmake/install-packages.sh systemd-container
+	@tests/boot/package_test.sh build/deb/rfmvo-firmware_*.deb
+	@tests/boot/service_test.sh build/deb/rfmvo-firmware_*.deb
 
 # kill -9 at random moments under load, so many times.
 CRASHES ?= 200
