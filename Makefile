@@ -8,7 +8,7 @@ ASAN_EXCLUDE ?= scenario|reference
 
 rfmvo := build/release/host/rfmvo
 
-.PHONY: build deb crash-test test-camera soak demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
+.PHONY: build deb crash-test test-camera test-service test-tsan soak demo demo-offline reproduce test test-asan test-clang test-arm64 bench fuzz format format-check tidy packages clean
 
 packages:
 	@cmake/install-packages.sh
@@ -91,6 +91,12 @@ deb: build
 	@lintian --fail-on error build/deb/*.deb
 	@ls -l build/deb/*.deb
 
+# The packages' life (install, upgrade, purge), and the service as systemd runs it, in a container. Root only.
+test-service: deb
+	@cmake/install-packages.sh systemd-container
+	@tests/boot/package_test.sh build/deb/rfmvo-firmware_*.deb
+	@tests/boot/service_test.sh build/deb/rfmvo-firmware_*.deb
+
 # kill -9 at random moments under load, so many times.
 CRASHES ?= 200
 crash-test: build
@@ -108,6 +114,12 @@ test-camera: packages
 SOAK_MINUTES ?= 30
 soak: build
 	build/release/tests/rfmvo_odometry_soak --minutes $(SOAK_MINUTES)
+
+# The threads of edges and daemon under ThreadSanitizer.
+test-tsan: packages
+	@cmake -S tests/tsan -B build/tsan -G Ninja $(CCACHE) >/dev/null
+	@cmake --build build/tsan -j $(JOBS)
+	@ctest --test-dir build/tsan --output-on-failure
 
 # What comes from outside, thrown at the codec, the journal reader, the configuration and its door for so many seconds each.
 FUZZ_SECONDS ?= 30
@@ -139,4 +151,4 @@ tidy: build
 
 # The Python environment and downloaded packages stay.
 clean:
-	rm -rf build/release build/asan build/clang build/arm64 build/fuzz demo reproduction
+	rm -rf build/release build/asan build/clang build/arm64 build/fuzz build/tsan build/deb demo reproduction

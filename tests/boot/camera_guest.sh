@@ -69,10 +69,22 @@ run() {
 }
 for format in grey nv12 yuv420 yuyv; do
   settings="--set camera.format=$format"
-  run "format-$format" 5
+  run "format-$format" 3
 done
 settings=""
 drop() { v4l2-ctl -d /dev/video0 -c percentage_of_dropped_buffers=30; }
-run drops 15 drop
+run drops 10 drop
 v4l2-ctl -d /dev/video0 -c percentage_of_dropped_buffers=0
-run error 5 v4l2-ctl -d /dev/video0 -c inject_vidioc_dqbuf_error=1
+break_stream() { v4l2-ctl -d /dev/video0 -c inject_fatal_streaming_error=1; }
+run error 5 break_stream
+
+fail() {
+  echo "camera_guest.sh: $1"
+  exit 1
+}
+grep -q "pictures were lost on the way" /share/drops.log || fail "lost pictures were not told"
+grep -q "/dev/video0: gives no picture" /share/error.log || fail "the broken stream was not told"
+for name in format-grey format-nv12 format-yuv420 format-yuyv drops error; do
+  ls "/share/$name"/*.lcmlog >/dev/null || fail "$name has no whole journal"
+done
+echo "cameras: as it should be"
