@@ -7,6 +7,7 @@
 #include "edges/box/settings_file.hpp"
 #include "edges/sources.hpp"
 #include "edges/stop_signal.hpp"
+#include "edges/thread_worker.hpp"
 
 namespace rfmvo {
 Result<std::vector<Command>> Reloading::look(DeviceTime now) {
@@ -148,7 +149,8 @@ RunLoop::RunLoop(Parts parts) : parts_(parts) {}
 Status RunLoop::run() {
   Around around(parts_);
   ReconfiguredSource events(around, parts_.config, parts_.calibration);
-  Pipeline pipeline;
+  ThreadWorker worker;
+  Pipeline pipeline(&worker);
   return rfmvo::run(events, &around, pipeline, around);
 }
 

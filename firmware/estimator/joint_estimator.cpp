@@ -1,7 +1,6 @@
 #include "estimator/joint_estimator.hpp"
 
 #include <algorithm>
-#include <future>
 #include <iterator>
 #include <variant>
 
@@ -30,13 +29,15 @@ struct JointEstimator::Impl {
   enum class Work { kSolve, kCloseWindow, kCloseLost };
   struct Job {
     Work work = Work::kSolve;
-    std::future<Solution> solution;
+    std::shared_ptr<std::optional<Solution>> solution;  // the worker's until it was waited for
     int publications_left = 1;
   };
 
   Config config;
   Calibration calibration;
   Window window;
+  InlineWorker at_once;
+  Worker* worker = &at_once;
   // Of an earlier odometry segment that the newest may still be joined with, and the newest.
   std::vector<JointSegment> open;
   std::optional<JointSegment> next;  // the second half of the newest, which takes over
@@ -77,19 +78,18 @@ Solution JointEstimator::Impl::solve(std::vector<JointSegment> segments, bool in
       segments = {std::move(*both)};
     }
   }
-  SegmentsDescription description = describe_segments(segments, now, calibration.camera_rotation_sigma_rad, config.joint);
+  SegmentsDescription description =
+      describe_segments(segments, now, calibration.camera_rotation_sigma_rad, config.joint);
   return {std::move(segments), std::move(description)};
 }
 
 void JointEstimator::Impl::start(Work work, std::vector<JointSegment> segments, bool join, DeviceTime now) {
   constexpr int kSoon = 1, kInFull = 10;  // publications
   const bool in_full = work != Work::kSolve;
-  job = {work,
-         std::async(std::launch::async,
-                    [this, in_full, join, now, copies = std::move(segments)]() mutable {
-                      return solve(std::move(copies), in_full, join, now);
-                    }),
-         in_full ? kInFull : kSoon};
+  job = {work, std::make_shared<std::optional<Solution>>(), in_full ? kInFull : kSoon};
+  worker->start([this, in_full, join, now, copies = std::move(segments), solution = job->solution] {
+    *solution = solve(copies, in_full, join, now);
+  });
   since.clear();
 }
 
@@ -106,7 +106,8 @@ void JointEstimator::Impl::begin_job(DeviceTime now) {
 }
 
 void JointEstimator::Impl::end_job() {
-  Solution solution = job->solution.get();
+  worker->wait();
+  Solution solution = std::move(job->solution->value());
   const Work work = job->work;
   job.reset();
   if (work == Work::kSolve) return accept(std::move(solution));
@@ -157,14 +158,18 @@ void JointEstimator::Impl::finish(DeviceTime now) {
   accept(solve(std::move(open), true, true, now));
 }
 
-JointEstimator::JointEstimator(const Config& config, const Calibration& calibration, const Window& window)
+JointEstimator::JointEstimator(const Config& config, const Calibration& calibration, const Window& window,
+                               Worker* worker)
     : impl_(std::make_unique<Impl>()) {
   impl_->window = window;
+  if (worker != nullptr) impl_->worker = worker;
   impl_->config = config;
   impl_->calibration = calibration;
   impl_->map = TagMap(config.joint.stale_after_s);
 }
-JointEstimator::~JointEstimator() = default;
+JointEstimator::~JointEstimator() {
+  if (impl_->job) impl_->worker->wait();
+}
 
 void JointEstimator::on(const CameraPose& pose) {
   if (pose.status != VoStatus::kTracking && pose.status != VoStatus::kDegraded) return;

@@ -13,6 +13,7 @@
 #include "estimator/estimate.hpp"
 #include "estimator/event.hpp"
 #include "estimator/sampling_synchronization.hpp"
+#include "estimator/worker.hpp"
 
 namespace rfmvo {
 
@@ -26,7 +27,9 @@ struct Window {
 
 class JointEstimator {
  public:
-  JointEstimator(const Config& config, const Calibration& calibration, const Window& window = {});
+  // `worker`: solves; it outlives the estimator. Null: solved at once.
+  JointEstimator(const Config& config, const Calibration& calibration, const Window& window = {},
+                 Worker* worker = nullptr);
   ~JointEstimator();
 
   void on(const CameraPose& pose);

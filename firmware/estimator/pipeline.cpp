@@ -13,6 +13,7 @@
 namespace rfmvo {
 
 struct Pipeline::State {
+  Worker* worker = nullptr;
   Config config;
   Calibration calibration;
   std::optional<VisualOdometry> odometry;
@@ -44,7 +45,7 @@ void Pipeline::State::on(const Start& start) {
   if (config.estimator.kind == "paper")
     estimator.emplace<PaperEstimator>(config, calibration);
   else
-    estimator.emplace<JointEstimator>(config, calibration);
+    estimator.emplace<JointEstimator>(config, calibration, Window{}, worker);
   health = Health{};
   last_publish = start.time;
   running = true;
@@ -121,7 +122,7 @@ void Pipeline::State::publish(bool final) {
   last_publish = now;
 }
 
-Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
+Pipeline::Pipeline(Worker* worker) : state_(std::make_unique<State>()) { state_->worker = worker; }
 Pipeline::~Pipeline() = default;
 
 std::span<const Estimate> Pipeline::on(const Event& event) {

@@ -6,12 +6,14 @@
 
 #include "estimator/estimate.hpp"
 #include "estimator/event.hpp"
+#include "estimator/worker.hpp"
 
 namespace rfmvo {
 
 class Pipeline {
  public:
-  Pipeline();
+  // `worker`: solves, see worker.hpp; it outlives the pipeline. Null: solved at once, with the same results.
+  explicit Pipeline(Worker* worker = nullptr);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
