@@ -24,6 +24,8 @@ void add_stress_options(CLI::App& command, simulate::Options& options) {
       ->check(CLI::Range(0.0, 3.0));
   command.add_option("--tags", options.tags, "Number of tags (default: the scene's own)")
       ->check(CLI::Range(std::size_t{1}, kMaxTags));
+  command.add_option("--read-rate-hz", options.read_rate_hz, "Reads per second of all tags (S3 .. tags300)")
+      ->check(CLI::Range(1.0, 5000.0));
   command.add_option("--duration-s", options.duration_s, "Length of a drive (shelf05 .. corridor)")
       ->check(CLI::Range(8.0, 7200.0));
 }

@@ -32,7 +32,8 @@ Json run_json(const Options& o) {
           {"outliers", s.outlier_share},
           {"flips", s.flip_share},
           {"frame_gap_s", s.frame_gap_s},
-          {"structured_rad", or_null(s.structured_rad)}};
+          {"structured_rad", or_null(s.structured_rad)},
+          {"read_rate_hz", or_null(s.read_rate_hz)}};
 }
 
 Json seed_json(const SeedRun& run) {

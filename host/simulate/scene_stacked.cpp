@@ -83,6 +83,7 @@ Scene make_stacked_scene(const Options& options) {
   scene.calibration = calibration_of(shape);
   // tags300: a fast reader mode, two reads of each tag a second.
   if (options.scene == "tags300") scene.read_rate_hz = 2.0 * static_cast<double>(shape.tags);
+  if (options.read_rate_hz) scene.read_rate_hz = *options.read_rate_hz;
   const Rigid3 T_B_C = scene.calibration.T_B_C;
   scene.T_S_C = [shape, T_B_C](double t_s) { return body_pose(shape, t_s) * T_B_C; };
 

@@ -28,6 +28,7 @@ struct Options {
   double frame_gap_s = 0.0;              // no frame and no camera pose for this long, in the middle of the run
   std::optional<double> structured_rad;  // strength of the structured phase error; nothing: the scene's own
   std::size_t tags = 0;                  // 0: the scene's own number
+  std::optional<double> read_rate_hz;    // of the statistical inventory; nothing: the scene's own
   std::optional<double> duration_s;      // of a drive (shelf05 .. corridor); nothing: the scene's own
 };
 
