@@ -1,12 +1,14 @@
 #include "edges/live_source.hpp"
 
 #include <chrono>
+#include <string>
+#include <utility>
 
 namespace rfmvo {
 namespace {
 
 constexpr std::size_t kMaxFrames = 64;       // the camera waits: 20 MB of 640 x 480
-constexpr std::size_t kMaxEvents = 100'000;  // reads are dropped, with a fault: 100 s at 1000/s
+constexpr std::size_t kMaxEvents = 100'000;  // reads are dropped, counted in a fault: 100 s at 1000/s
 constexpr Duration kReaderPoll{100'000'000};
 constexpr Duration kLastReadsWithin{500'000'000};
 constexpr std::chrono::seconds kTickAfter{1};
@@ -65,10 +67,13 @@ void LiveSource::push(std::vector<Event> events) {
   if (events.empty()) return;
   const std::lock_guard lock(mutex_);
   for (Event& event : events) {
-    if (queue_.size() < kMaxEvents)
-      queue_.push_back(std::move(event));
-    else if (reads_dropped_++ == 0)
-      queue_.push_back(Fault{clock_(), "reader", "reads are dropped: the estimator is too slow"});
+    if (queue_.size() >= kMaxEvents) {
+      if (dropped_++ == 0) queue_.push_back(Fault{clock_(), "reader", "reads are dropped: the estimator is too slow"});
+      continue;
+    }
+    if (dropped_ > 0)
+      queue_.push_back(Fault{clock_(), "reader", std::to_string(std::exchange(dropped_, 0)) + " reads were dropped"});
+    queue_.push_back(std::move(event));
   }
   changed_.notify_all();
 }

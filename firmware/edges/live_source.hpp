@@ -42,8 +42,8 @@ class LiveSource : public EventSource {
   std::condition_variable changed_;
   std::deque<Event> queue_;
   std::size_t frames_waiting_ = 0;
-  std::uint64_t reads_dropped_ = 0;
-  bool started_ = false;  // the Start is out, or under way
+  std::uint64_t dropped_ = 0;  // and not yet told
+  bool started_ = false;       // the Start is out, or under way
   std::optional<DeviceTime> camera_ended_;
   std::optional<Error> camera_error_;
 
