@@ -51,6 +51,29 @@ class EagerReader : public Reader {
   std::int64_t count_ = 0;
 };
 
+// All at once more reads than may wait, then one at every poll.
+class FloodingReader : public Reader {
+ public:
+  explicit FloodingReader(DeviceClockFunction clock) : clock_(std::move(clock)) {}
+  [[nodiscard]] std::vector<Event> poll(Duration) override {
+    std::this_thread::yield();
+    std::vector<Event> events(next_ == 0 ? 100'500 : 1);
+    for (Event& event : events) {
+      TagRead read;
+      read.time = clock_();
+      read.reader_time = ReaderTime{next_++};
+      event = read;
+    }
+    return events;
+  }
+  void wake() override {}
+  void stop() override {}
+
+ private:
+  DeviceClockFunction clock_;
+  std::int64_t next_ = 0;
+};
+
 struct Stream {
   std::vector<Event> events;
   std::string error;
@@ -88,6 +111,23 @@ TEST(LiveSource, BeginsWithTheStartAndLosesNothing) {
     EXPECT_GT(reads, 0);
   }
   EXPECT_TRUE(stopped) << "the reader was left in order";
+}
+
+TEST(LiveSource, CountsWhatItMustDrop) {
+  LiveSource source(camera_of(1'000'000'000), std::make_unique<FloodingReader>(device_clock()), device_clock());
+  std::int64_t expected = 0, missing = 0, told = 0;
+  while (missing == 0) {
+    const auto next = source.next();
+    ASSERT_TRUE(next.ok() && next.value());
+    if (const auto* fault = std::get_if<Fault>(&*next.value()); fault != nullptr && fault->text.ends_with("dropped"))
+      told = std::stoll(fault->text);
+    const auto* read = std::get_if<TagRead>(&*next.value());
+    if (read == nullptr) continue;
+    missing = read->reader_time.ns - expected;
+    expected = read->reader_time.ns + 1;
+  }
+  EXPECT_GE(missing, 500);
+  EXPECT_EQ(told, missing);
 }
 
 TEST(LiveSource, EndsWithTheCamerasError) {
