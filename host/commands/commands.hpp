@@ -16,5 +16,6 @@ void add_bound_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 void add_reader_sim_command(CLI::App& app, int& exit_code);
+void add_configure_command(CLI::App& app, int& exit_code);
 
 }  // namespace rfmvo
