@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   rfmvo::add_reproduce_command(app, exit_code);
   rfmvo::add_vo_command(app, exit_code);
   rfmvo::add_reader_sim_command(app, exit_code);
+  rfmvo::add_configure_command(app, exit_code);
   rfmvo::add_manual_commands(app);
   try {
     app.parse(argc, argv);

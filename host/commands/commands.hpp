@@ -17,6 +17,7 @@ void add_bound_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_vo_command(CLI::App& app, int& exit_code);
 void add_reader_sim_command(CLI::App& app, int& exit_code);
+void add_configure_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
 void add_calibrate_command(CLI::App& app, int& exit_code);

@@ -29,7 +29,9 @@ int write_all(int descriptor, std::string_view content, bool sync) {
   return sync && ::fsync(descriptor) != 0 ? errno : 0;
 }
 
+// What lies in /dev and /proc is special even where it leads to a file: /dev/stdout, redirected, must not be replaced.
 bool is_special(const std::string& path) {
+  if (path.starts_with("/dev/") || path.starts_with("/proc/")) return true;
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <lcm/lcm-cpp.hpp>
+#include <mutex>
 
+#include "config/config_table.hpp"
+#include "edges/box/config_client.hpp"
 #include "edges/lcm_bus.hpp"
 #include "rfmvo/config_reply_t.hpp"
 
@@ -30,6 +33,38 @@ TEST(ConfigPort, NobodyCanKnockWhereThereIsNoBus) {
     ASSERT_TRUE(port.ok());
     EXPECT_EQ(port.value(), nullptr);
   }
+}
+
+// Both ends, with the key and without.
+TEST(ConfigClient, SetsWhatTheKeyAllows) {
+  const std::string url = "udpm://239.255.76.67:" + std::to_string(40000 + ::getpid() % 20000) + "?ttl=0";
+  if (!LcmBus::create(url, "RFMVO_")) GTEST_SKIP() << "no multicast route";
+  std::mutex mutex;
+  Config config;
+  const ConfigServer::Doors doors{[&] {
+                                    const std::lock_guard lock(mutex);
+                                    return config;
+                                  },
+                                  [&](const std::string& key, const std::string& value) -> Result<Config> {
+                                    const std::lock_guard lock(mutex);
+                                    if (const Status s = set_value_from_text(config, key, value); !s) return s.error();
+                                    return config;
+                                  }};
+  const Key key(32, 5), wrong(32, 6);
+  auto port = ConfigPort::open(url, "RFMVO_", std::make_unique<ConfigServer>(doors, key, Key(32, 1)), device_clock());
+  ASSERT_TRUE(port.ok());
+  auto client = ConfigClient::open(url, "RFMVO_");
+  ASSERT_TRUE(client.ok());
+  const auto all = client.value()->list();
+  ASSERT_TRUE(all.ok()) << all.error().text();
+  EXPECT_EQ(all.value().size(), config_rows().size());
+  const auto set = client.value()->set(key, "camera.exposure_s", "0.004");
+  ASSERT_TRUE(set.ok()) << set.error().text();
+  EXPECT_EQ(set.value().value, "0.004");
+  EXPECT_TRUE(set.value().live);
+  EXPECT_EQ(client.value()->get("camera.exposure_s").value().value, "0.004");
+  EXPECT_EQ(client.value()->set(wrong, "camera.exposure_s", "0.005").error().text(), "not sealed with this box's key");
+  EXPECT_EQ(client.value()->get("camera.exposure_s").value().value, "0.004");
 }
 
 TEST(ConfigPort, AnswersOnTheBus) {

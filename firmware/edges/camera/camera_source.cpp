@@ -100,7 +100,9 @@ void CameraSource::try_start(DeviceTime now) {
   gaps_.on_restart();
   offsets_ = parts_.offsets();
   offsets_read_ = ready;
-  for (const std::string& note : mode.value().notes) waiting_.push_back(Fault{ready, "camera", note});
+  if (mode.value().notes == last_notes_) return;
+  last_notes_ = std::move(mode).value().notes;
+  for (const std::string& note : last_notes_) waiting_.push_back(Fault{ready, "camera", note});
 }
 
 // The same trouble again and again is told once.

@@ -57,6 +57,7 @@ class CameraSource : public EventSource {
 
   bool started_ = false, running_ = false, stamps_doubted_ = false;
   std::string last_failure_;
+  std::vector<std::string> last_notes_;
   RestartPolicy policy_;
   FrameGaps gaps_;
   ClockOffsets offsets_;
