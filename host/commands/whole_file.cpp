@@ -30,6 +30,8 @@ int write_all(int descriptor, std::string_view content, bool sync) {
 }
 
 bool is_special(const std::string& path) {
+  // /dev/stdout may lead to a regular file; the name itself must never be renamed over.
+  if (path.starts_with("/dev/")) return true;
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
