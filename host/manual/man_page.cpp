@@ -39,7 +39,11 @@ std::string option_entry(const CLI::Option& option) {
   std::string text =
       fmt::format(".TP\n\\fB{}\\fR{}\n{}", roff(names_of(option)), value_of(option), roff(option.get_description()));
   const std::string type = option.get_type_name();
-  if (const auto open = type.find('{'); open != std::string::npos) text += roff(": " + type.substr(open));
+  if (const auto open = type.find('{'); open != std::string::npos) {
+    text += ": ";
+    // A space, so that long lists can be broken.
+    for (const char c : type.substr(open)) text += c == ',' ? ", " : roff(std::string(1, c));
+  }
   if (!option.get_default_str().empty()) text += roff(" (default: " + option.get_default_str() + ")");
   return text + "\n";
 }

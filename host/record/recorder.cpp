@@ -14,9 +14,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxQueueBytes = std::size_t{256} << 20;
 constexpr Duration kListen{Duration::from_seconds(0.05)};
-// After the stop: so long must the bus be silent, or so often is it asked, before all that had been sent is here.
-constexpr Duration kDrain{Duration::from_seconds(0.02)};
-constexpr int kMaxDrained = 100'000;
+// After the stop: what has arrived is taken, for at most so long; others may go on talking.
+constexpr std::chrono::seconds kDrain{1};
 
 std::int64_t realtime_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -34,16 +33,18 @@ class Inbox {
  public:
   explicit Inbox(BusListener& bus) : bus_(bus), thread_([this] { listen(); }) {}
   ~Inbox() {
+    {
+      const std::lock_guard lock(mutex_);
+      abandoned_ = true;
+    }
+    room_.notify_all();
     finish();
     thread_.join();
   }
   Inbox(const Inbox&) = delete;
   Inbox& operator=(const Inbox&) = delete;
 
-  void finish() {
-    stopping_ = true;
-    room_.notify_all();
-  }
+  void finish() { stopping_ = true; }
   // Waits a little. Nothing: nothing came, or, if done(), nothing will.
   std::optional<Received> take() {
     std::unique_lock lock(mutex_);
@@ -70,22 +71,23 @@ class Inbox {
 
  private:
   void listen() {
-    for (int drained = 0; drained < kMaxDrained;) {
-      const bool draining = stopping_;
-      auto next = bus_.next(draining ? kDrain : kListen);
+    std::optional<Clock::time_point> until;
+    while (!until || Clock::now() < *until) {
+      if (stopping_ && !until) until = Clock::now() + kDrain;
+      auto next = bus_.next(until ? Duration{0} : kListen);
       if (!next) {
         put_end(next.error());
         return;
       }
-      if (!next.value() && draining) break;
-      drained += draining ? 1 : 0;
+      if (!next.value() && until) break;
       if (next.value()) put(std::move(*std::move(next).value()));
     }
     put_end(std::nullopt);
   }
   void put(BusMessage message) {
     std::unique_lock lock(mutex_);
-    room_.wait(lock, [this] { return bytes_ < kMaxQueueBytes; });
+    room_.wait(lock, [this] { return bytes_ < kMaxQueueBytes || abandoned_; });
+    if (abandoned_) return;
     bytes_ += message.data.size();
     loss_ = bus_.loss();
     queue_.push_back({std::move(message), realtime_us(), loss_});
@@ -106,7 +108,7 @@ class Inbox {
   std::deque<Received> queue_;
   std::size_t bytes_ = 0;
   BusLoss loss_;
-  bool done_ = false;
+  bool done_ = false, abandoned_ = false;
   std::optional<Error> error_;
   std::thread thread_;  // last: it uses all of the above
 };

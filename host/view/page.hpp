@@ -49,7 +49,9 @@ function drawPicture(){
  if(!overlay)return;g.font=Math.round(w/50)+'px system-ui,sans-serif';g.lineWidth=w/320;
  for(const t of overlay.tags){g.strokeStyle=g.fillStyle=t.ok?'#5aa5ff':'#f0a04b';g.beginPath();
   if(t.a<2*w){g.ellipse(t.x,t.y,Math.max(t.a,2),Math.max(t.b,2),t.angle,0,7);g.stroke()}
-  g.beginPath();g.arc(t.x,t.y,w/200,0,7);g.fill();g.fillText(label(t.epc)+' '+t.d.toFixed(1)+' m',t.x+w/90,t.y-w/110)}
+  g.beginPath();g.arc(t.x,t.y,w/200,0,7);g.fill();
+  const text=label(t.epc)+' '+t.d.toFixed(1)+' m',x=t.x+w/90,y=t.y-w/110,colour=g.fillStyle;
+  g.save();g.strokeStyle='#000b';g.lineWidth=w/160;g.lineJoin='round';g.strokeText(text,x,y);g.restore();g.fillStyle=colour;g.fillText(text,x,y)}
 }
 function drawMap(){
  mapDue=false;const c=$('map'),r=window.devicePixelRatio||1,W=c.clientWidth,H=c.clientHeight,g=c.getContext('2d');

@@ -10,6 +10,7 @@
 #include "host/real_bus.hpp"
 #include "inspect/run_info.hpp"
 #include "record/log_series.hpp"
+#include "record/recorder.hpp"
 
 namespace rfmvo {
 namespace {
@@ -193,6 +194,44 @@ TEST_F(Series, AnEarlierSeriesIsOverwrittenOnlyByForceAndThenWhole) {
   s.overwrite = true;
   ASSERT_TRUE(record::LogSeries::create(s).ok());
   EXPECT_THAT(folder_.names(), ElementsAre("run-00001.lcmlog", "run-old.lcmlog"));
+}
+
+// A bus on which somebody talks without end.
+class EndlessBus : public BusListener {
+ public:
+  explicit EndlessBus(std::size_t bytes) : bytes_(bytes) {}
+  Result<std::optional<BusMessage>> next(Duration) override { return std::optional(message(bytes_)); }
+  [[nodiscard]] BusLoss loss() const override { return {}; }
+
+ private:
+  std::size_t bytes_;
+};
+
+TEST_F(Series, ARecordingEndsAlsoWhileOthersTalkOn) {
+  EndlessBus bus(100);
+  auto series = record::LogSeries::create(settings(0));
+  ASSERT_TRUE(series.ok());
+  record::RecorderFigures figures;
+  const auto recorded = record::record(
+      bus, *series.value(), {}, [&] { return figures.messages > 1000; }, [](const record::RecorderFigures&) {},
+      figures);
+  EXPECT_TRUE(recorded.ok());
+  EXPECT_EQ(records_of(folder_ / "run.lcmlog").size(), figures.messages);
+}
+
+TEST_F(Series, AFullDiskEndsTheRecordingAlsoWhileOthersTalkOn) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  EndlessBus bus(1 << 20);
+  auto s = settings(0);
+  std::filesystem::create_symlink("/dev/full", s.path);
+  s.overwrite = true;
+  auto series = record::LogSeries::create(s);
+  ASSERT_TRUE(series.ok());
+  record::RecorderFigures figures;
+  const auto recorded = record::record(
+      bus, *series.value(), {}, [] { return false; }, [](const record::RecorderFigures&) {}, figures);
+  ASSERT_FALSE(recorded.ok());
+  EXPECT_THAT(recorded.error().text(), HasSubstr("No space left on device"));
 }
 
 }  // namespace

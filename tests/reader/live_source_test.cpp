@@ -104,8 +104,11 @@ TEST(LiveSource, BeginsWithTheStartAndLosesNothing) {
     EXPECT_TRUE(std::holds_alternative<Start>(stream.events.front()));
     std::int64_t frames = 0, reads = 0;
     for (const Event& event : stream.events) {
-      if (const auto* frame = std::get_if<Frame>(&event)) EXPECT_EQ(frame->sequence, ++frames);
-      if (const auto* read = std::get_if<TagRead>(&event)) EXPECT_EQ(read->reader_time.ns, reads++);
+      if (const auto* frame = std::get_if<Frame>(&event)) {
+        EXPECT_EQ(frame->sequence, ++frames);
+      } else if (const auto* read = std::get_if<TagRead>(&event)) {
+        EXPECT_EQ(read->reader_time.ns, reads++);
+      }
     }
     EXPECT_EQ(frames, kFrames);
     EXPECT_GT(reads, 0);
@@ -115,19 +118,17 @@ TEST(LiveSource, BeginsWithTheStartAndLosesNothing) {
 
 TEST(LiveSource, CountsWhatItMustDrop) {
   LiveSource source(camera_of(1'000'000'000), std::make_unique<FloodingReader>(device_clock()), device_clock());
-  std::int64_t expected = 0, missing = 0, told = 0;
+  std::int64_t expected = 0, missing = 0;
   while (missing == 0) {
     const auto next = source.next();
     ASSERT_TRUE(next.ok() && next.value());
-    if (const auto* fault = std::get_if<Fault>(&*next.value()); fault != nullptr && fault->text.ends_with("dropped"))
-      told = std::stoll(fault->text);
     const auto* read = std::get_if<TagRead>(&*next.value());
     if (read == nullptr) continue;
     missing = read->reader_time.ns - expected;
     expected = read->reader_time.ns + 1;
   }
   EXPECT_GE(missing, 500);
-  EXPECT_EQ(told, missing);
+  EXPECT_GE(source.counters().reads_dropped, static_cast<std::uint64_t>(missing));
 }
 
 TEST(LiveSource, EndsWithTheCamerasError) {
