@@ -1,8 +1,11 @@
 #include "view/web_server.hpp"
 
 #include <libwebsockets.h>
+#include <netdb.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -23,6 +26,22 @@ Bytes framed(const std::string& message) {
   auto bytes = std::make_shared<std::vector<unsigned char>>(LWS_PRE + message.size());
   std::copy(message.begin(), message.end(), bytes->begin() + LWS_PRE);
   return bytes;
+}
+
+// libwebsockets waits for an address that this machine does not have, as for a cable that is not plugged in yet.
+bool can_bind(const std::string& address, std::uint16_t port) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE;
+  addrinfo* found = nullptr;
+  if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return false;
+  const int descriptor = ::socket(found->ai_family, found->ai_socktype | SOCK_CLOEXEC, 0);
+  const int reuse = 1;
+  ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
+  const bool bound = descriptor >= 0 && ::bind(descriptor, found->ai_addr, found->ai_addrlen) == 0;
+  ::freeaddrinfo(found);
+  if (descriptor >= 0) ::close(descriptor);
+  return bound;
 }
 
 struct Message {
@@ -175,6 +194,9 @@ Result<std::unique_ptr<WebServer>> WebServer::create(const WebSettings& settings
                                              {"rfmvo", &Impl::on_socket, sizeof(Session), 1024, 0, nullptr, 0},
                                              {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
   lws_set_log_level(0, nullptr);
+  const Error refused{ErrorCode::kUnsupported, "cannot be listened on (taken, or not an address of this machine)",
+                      settings.address + ":" + std::to_string(settings.port)};
+  if (!can_bind(settings.address, settings.port)) return refused;
   auto impl = std::make_unique<Impl>();
   impl->settings = settings;
   impl->page = framed(page);
@@ -191,8 +213,7 @@ Result<std::unique_ptr<WebServer>> WebServer::create(const WebSettings& settings
   if (impl->context != nullptr) impl->vhost = lws_create_vhost(impl->context, &info);
   if (impl->vhost == nullptr) {
     if (impl->context != nullptr) lws_context_destroy(impl->context);
-    return Error{ErrorCode::kUnsupported, "cannot be listened on (taken, or not an address of this machine)",
-                 settings.address + ":" + std::to_string(settings.port)};
+    return refused;
   }
   return std::unique_ptr<WebServer>(new WebServer(std::move(impl)));
 }
