@@ -1,6 +1,6 @@
 # `make deb`: rfmvo-firmware (the box) and rfmvo-host (tools) as Debian packages.
 set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_CONTACT "rfmvo developers <rfmvo@lists.rfmvo.org>")
+set(CPACK_PACKAGE_CONTACT "rfmvo developers <rfmvo@example.org>")
 set(CPACK_PACKAGE_VENDOR rfmvo)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
