@@ -13,23 +13,23 @@ namespace {
 
 std::atomic<std::size_t> allocations{0}, allocated_bytes{0};
 
-void* counted(std::size_t size) {
+}  // namespace
+
+// Of the whole test program; but not under the sanitizer, which has its own.
+#ifndef __SANITIZE_ADDRESS__
+void* operator new(std::size_t size) {
   ++allocations;
   allocated_bytes += size;
   void* p = std::malloc(size);
   if (p == nullptr) throw std::bad_alloc();
   return p;
 }
-
-}  // namespace
-
-// Of the whole test program.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return operator new(size); }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+#endif
 
 namespace rfmvo {
 namespace {
@@ -71,6 +71,7 @@ TEST(Memory, AReadAllocatesNothingInTheSteadyState) {
     for (const SampledRead& r : synchronization.on(read)) estimator.on(r);
     if (frame > 11000) in_steady_state += allocations - before;
   }
+  if (allocations == 0) GTEST_SKIP() << "allocations are not counted here";
   EXPECT_EQ(in_steady_state, 0U);
 }
 
