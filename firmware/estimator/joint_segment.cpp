@@ -80,8 +80,8 @@ void JointSegment::add(const SampledRead& sampled) {
   SegmentTag::Read r;
   const auto piece = static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), sampled.segment) - ids_.begin());
   r.read.geometry = path_.geometry(sampled.T_V_C, sampled.velocity_V, sampled.angular_velocity_C, piece);
-  r.read.geometry.wavenumber_rad_m = 2.0 * kTwoPi * frequency_hz / kSpeedOfLight_m_s;
-  r.read.geometry.frequency_term_rad_m = 2.0 * kTwoPi * (frequency_hz - reference_frequency_hz_) / kSpeedOfLight_m_s;
+  r.read.geometry.wavenumber_rad_m = wavenumber_rad_m(frequency_hz);
+  r.read.geometry.frequency_term_rad_m = wavenumber_rad_m(frequency_hz - reference_frequency_hz_);
   r.read.phase_rad = read.phase.rad();
   const double odometry_rad = r.read.geometry.wavenumber_rad_m * config_.joint.vo_position_sigma_m;
   r.read.white_rad2 = std::pow(white_sigma_rad(0.01 * read.rssi_cdbm), 2) + odometry_rad * odometry_rad;
@@ -202,12 +202,9 @@ double JointSegment::scale_m_per_unit(std::size_t piece) const {
 
 double JointSegment::log_scale_sigma(std::size_t piece) const {
   if (covariance_.shared.size() == 0) return 1e9;
-  const auto start_of = [&](const JointSegment& s) {
-    return s.path_.place(s.path_.pieces().at(piece).arc_V, s.knot_spacing_V_);
-  };
   Eigen::VectorXd J = Eigen::VectorXd::Zero(covariance_.layout.size());
   J[SharedLayout::kLogScale] = 1.0;
-  const int knot = start_of(*this).knot;
+  const int knot = path_.place(path_.pieces().at(piece).arc_V, knot_spacing_V_).knot;
   constexpr int kDrift = 6;
   if (knot > 0 && knot < covariance_.layout.knots) J[covariance_.layout.knot(knot) + kDrift] = 1.0;
   double variance = J.dot(covariance_.shared * J);

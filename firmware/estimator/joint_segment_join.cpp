@@ -126,7 +126,7 @@ void JointSegment::append(const JointSegment& later, const Rigid3& T_first_secon
         g.n_W = joint * g.n_W;
         g.velocity_W = joint.ratio * (joint.R * g.velocity_W);
         g.R_W_C = joint.R.toRotationMatrix() * g.R_W_C;
-        g.frequency_term_rad_m = 2.0 * kTwoPi * (r.frequency_hz - reference_frequency_hz_) / kSpeedOfLight_m_s;
+        g.frequency_term_rad_m = wavenumber_rad_m(r.frequency_hz - reference_frequency_hz_);
         r.arc_V = start_V + joint.ratio * r.arc_V;
         r.time_s += later_s;
         tag.chains[p].push_back(r);

@@ -10,6 +10,8 @@
 #include <opencv2/videoio.hpp>
 #include <vector>
 
+#include "evaluate/last_estimates.hpp"
+
 namespace rfmvo::odometry {
 namespace {
 
@@ -18,20 +20,6 @@ constexpr double kRate_hz = 30.0;  // of the film
 constexpr std::size_t kTail = 8;   // frames of a point's way that are drawn
 const cv::Scalar kGreen(80, 220, 80), kOrange(40, 160, 255), kRed(60, 60, 240), kGrey(150, 150, 150),
     kWhite(255, 255, 255), kBlue(255, 160, 60);
-
-const char* name_of(VoStatus status) {
-  switch (status) {
-    case VoStatus::kInitialising:
-      return "INITIALISING";
-    case VoStatus::kTracking:
-      return "TRACKING";
-    case VoStatus::kDegraded:
-      return "DEGRADED";
-    case VoStatus::kLost:
-      return "LOST";
-  }
-  return "";
-}
 
 // V from above: x to the right, z (where the first camera looked) up.
 struct Plan {
@@ -117,7 +105,7 @@ void ViewWriter::Impl::draw_map(const CameraPose& pose, const OdometryView& view
       cv::line(canvas, plan.at(pose.T_V_C.p_V_C), plan.at(ahead), kWhite, 2, cv::LINE_AA);
     }
   }
-  cv::putText(canvas, fmt::format("{}  segment {}  {} inliers", name_of(pose.status), pose.segment, pose.inliers),
+  cv::putText(canvas, fmt::format("{}  segment {}  {} inliers", evaluate::label_of(pose.status), pose.segment, pose.inliers),
               {kPaneWidth_px + 12, 24}, cv::FONT_HERSHEY_SIMPLEX, 0.55, kWhite, 1, cv::LINE_AA);
 }
 

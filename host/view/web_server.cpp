@@ -1,17 +1,16 @@
 #include "view/web_server.hpp"
 
 #include <libwebsockets.h>
-#include <netdb.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <set>
 #include <string_view>
 #include <vector>
+
+#include "edges/net/tcp.hpp"
 
 namespace rfmvo::view {
 namespace {
@@ -29,20 +28,7 @@ Bytes framed(const std::string& message) {
 }
 
 // libwebsockets waits for an address that this machine does not have, as for a cable that is not plugged in yet.
-bool can_bind(const std::string& address, std::uint16_t port) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  hints.ai_flags = AI_PASSIVE;
-  addrinfo* found = nullptr;
-  if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return false;
-  const int descriptor = ::socket(found->ai_family, found->ai_socktype | SOCK_CLOEXEC, 0);
-  const int reuse = 1;
-  ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  const bool bound = descriptor >= 0 && ::bind(descriptor, found->ai_addr, found->ai_addrlen) == 0;
-  ::freeaddrinfo(found);
-  if (descriptor >= 0) ::close(descriptor);
-  return bound;
-}
+bool can_bind(const std::string& address, std::uint16_t port) { return bool(net::listen_on(address, port)); }
 
 struct Message {
   std::uint64_t version = 0;
