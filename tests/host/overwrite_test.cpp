@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Overwrite,
                                            Writer{"info", "info %run.lcmlog --json %FILE"},
                                            Writer{"bound", "bound --scene onetag --json %FILE"},
                                            Writer{"board", "calibrate board --out %FILE"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& writer) { return std::string(writer.param.name); });
 
 TEST_P(Overwrite, TakesForce) {
   testing::write_journal(folder_ / "run.lcmlog", testing::short_run(20));
