@@ -59,6 +59,22 @@ void add_scaled(WhitenedRow& row, const Raw& raw, const JointRead& read, double 
   row.knot[k + 1] += factor * read.knot_fraction * raw.gradient_knot;
 }
 
+// A reader that turned one phase by pi turns the next ones of the same tag and port, too: bursts. Whether it does is a
+// Markov chain of two states along the chain of reads; this is the probability that it does now, given the past.
+class FlipBelief {
+ public:
+  explicit FlipBelief(double share) : enter_(share * (1.0 - kStay) / (1.0 - share)), share_(share), flipped_(share) {}
+  void restart() { flipped_ = share_; }
+  [[nodiscard]] double flipped() const { return flipped_; }
+  void advance(double flipped_given_read) {
+    flipped_ = flipped_given_read * kStay + (1.0 - flipped_given_read) * enter_;
+  }
+
+ private:
+  static constexpr double kStay = 0.75;  // four reads a burst; real ones are of a few (DESIGN 2.8)
+  double enter_, share_, flipped_;
+};
+
 // What one read may be: as modelled, flipped by pi, or (multipath at its worst, a stray reader) any
 // phase at all. -ln of the mixture, relative to the first component's peak; weight = probability of
 // being a measurement of this geometry at all.
@@ -66,15 +82,17 @@ struct Judgement {
   double innovation = 0.0;  // of the likelier of the two, rad
   bool flipped = false;
   double cost = 0.0, weight = 1.0;
+  double flip_probability = 0.0;  // now that the read is known
 };
-Judgement judge(double innovation, double sigma_rad, const JointProblem& problem) {
+Judgement judge(double innovation, double sigma_rad, double flip_probability, double outlier_probability) {
   const double other = wrap_rad(innovation + kPi);
-  const double as_is = (1.0 - problem.flip_probability) * std::exp(-0.5 * std::pow(innovation / sigma_rad, 2));
-  const double flip = problem.flip_probability * std::exp(-0.5 * std::pow(other / sigma_rad, 2));
-  const double any = problem.outlier_probability * sigma_rad / std::sqrt(kTwoPi);  // uniform on the circle
-  const double sum = (1.0 - problem.outlier_probability) * (as_is + flip);
+  const double as_is = (1.0 - flip_probability) * std::exp(-0.5 * std::pow(innovation / sigma_rad, 2));
+  const double flip = flip_probability * std::exp(-0.5 * std::pow(other / sigma_rad, 2));
+  const double any = outlier_probability * sigma_rad / std::sqrt(kTwoPi);  // uniform on the circle
+  const double measured = 1.0 - outlier_probability, sum = measured * (as_is + flip);
   const bool flipped = flip > as_is;
-  return {flipped ? other : innovation, flipped, -std::log(sum + any), sum / (sum + any)};
+  return {flipped ? other : innovation, flipped, -std::log(sum + any), sum / (sum + any),
+          (measured * flip + flip_probability * any) / (sum + any)};
 }
 
 }  // namespace
@@ -136,8 +154,10 @@ void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& proble
   std::vector<Raw>& raws = out.raws;
   out.rows.resize(reads.size());
   out.cost = out.log_variance = out.inliers = 0.0;
+  FlipBelief flips(problem.flip_probability);
   for (std::size_t i = 0; i < reads.size(); ++i) {
     Raw& raw = raws[i];
+    if (i > 0 && reads[i].port != reads[i - 1].port) flips.restart();
     const Lean* n = &conditioning.reads[i];
     Lean without_outliers;
     const auto usable = [&](std::size_t j) { return raws[j].usable; };
@@ -151,7 +171,9 @@ void whiten_rows(const std::vector<JointRead>& reads, const JointProblem& proble
     for (std::size_t k = 0; k < n->count; ++k) predicted += c.weights[k] * raws[n->neighbour[k]].unwrapped;
 
     const double sigma_rad = std::sqrt(c.variance_rad2);
-    const Judgement judgement = judge(wrap_rad(raw.residual - predicted), sigma_rad, problem);
+    const Judgement judgement =
+        judge(wrap_rad(raw.residual - predicted), sigma_rad, flips.flipped(), problem.outlier_probability);
+    flips.advance(judgement.flip_probability);
     raw.unwrapped = predicted + judgement.innovation;  // followers are predicted well
     raw.usable = judgement.weight > kOutlierWeight;
     out.cost += judgement.cost;
