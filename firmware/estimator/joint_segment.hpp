@@ -161,6 +161,7 @@ class JointSegment {
   enum class Effort { kNew, kRefresh, kAll };  // search new and open tags; refine all modes; search all
   void place(Effort effort);
   void select();
+  void estimate_signal_level();
   [[nodiscard]] SharedLayout layout() const {
     return {static_cast<int>(shared_.ports.size()), static_cast<int>(shared_.knots.size())};
   }

@@ -25,6 +25,22 @@ double JointSegment::total_evidence() const {
   return log_marginal_likelihood(problem_for(some), state_for(some)) - signal;
 }
 
+// What a typical tag of this site is like, from those whose position the phases have decided. A few tell nothing.
+void JointSegment::estimate_signal_level() {
+  constexpr std::size_t kFewest = 4;
+  std::vector<double> levels_db;
+  for (const auto& [epc, tag] : tags_) {
+    if (!tag.unique()) continue;
+    const JointProblem one = problem_for(std::vector{epc}, std::exp(shared_.log_scale));
+    levels_db.push_back(fit_signal_strength(one.reads[0], shared_, beams_, tag.state.p_W_X).level_db);
+  }
+  beams_.level_db.reset();
+  if (levels_db.size() < kFewest) return;
+  const auto middle = levels_db.begin() + static_cast<std::ptrdiff_t>(levels_db.size() / 2);
+  std::nth_element(levels_db.begin(), middle, levels_db.end());
+  beams_.level_db = *middle;
+}
+
 // Modes of tags that are new, ambiguous, or (kAll) of all, given the path as it is.
 void JointSegment::place(Effort effort) {
   const double scale = std::exp(shared_.log_scale);
@@ -170,11 +186,15 @@ void JointSegment::compute_covariance() {
 
 void JointSegment::iterate(Depth depth) {
   resize_knots();
+  estimate_signal_level();
   place(depth == Depth::kLook ? Effort::kNew : Effort::kAll);
   // The more tags are decided, the better the path and the port offsets, and the fewer modes remain.
   const int rounds = depth == Depth::kLook ? 1 : depth == Depth::kAside ? 2 : 4;
   for (int round = 0; round < rounds; ++round) {
-    if (round > 0) place(Effort::kRefresh);
+    if (round > 0) {
+      estimate_signal_level();
+      place(Effort::kRefresh);
+    }
     select();
     refine(depth == Depth::kFull && round < 3);
     if (depth == Depth::kFull && round > 0) estimate_drift();

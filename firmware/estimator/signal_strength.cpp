@@ -27,6 +27,11 @@ std::vector<Fade> fades_of(const std::vector<JointRead>& reads, const JointState
   return fades;
 }
 
+// -ln of Student's t, up to a constant.
+double t_cost(double e_db, double sigma_db) {
+  return 0.5 * (kFreedoms + 1.0) * std::log1p(e_db * e_db / (kFreedoms * sigma_db * sigma_db));
+}
+
 }  // namespace
 
 double two_way_pattern_db(double cosine, double half_power_rad) {
@@ -46,8 +51,8 @@ double expected_rssi_db(const JointRead& read, const JointState& state, const Be
   return gain_db + two_way_pattern_db(cosine, beams.half_power_rad) - 40.0 * std::log10(range_m);
 }
 
-double signal_strength_cost(const std::vector<JointRead>& reads, const JointState& state, const BeamModel& beams,
-                            const Eigen::Vector3d& p_W_X) {
+SignalFit fit_signal_strength(const std::vector<JointRead>& reads, const JointState& state, const BeamModel& beams,
+                              const Eigen::Vector3d& p_W_X) {
   const std::vector<Fade> fades = fades_of(reads, state, beams, p_W_X);
   const double spread = kFreedoms * beams.fading_db * beams.fading_db;
   // The constant that suits best: a mean whose outliers lose weight as Student's t has it.
@@ -63,12 +68,14 @@ double signal_strength_cost(const std::vector<JointRead>& reads, const JointStat
     }
     constant_db = sum / weights;
   }
-  double cost = 0.0;
-  for (const Fade& f : fades) {
-    const double e = f.excess_db - constant_db;
-    cost += f.weight * 0.5 * (kFreedoms + 1.0) * std::log1p(e * e / spread);
-  }
-  return cost;
+  double cost = beams.level_db ? t_cost(constant_db - *beams.level_db, beams.level_sigma_db) : 0.0;
+  for (const Fade& f : fades) cost += f.weight * t_cost(f.excess_db - constant_db, beams.fading_db);
+  return {cost, constant_db};
+}
+
+double signal_strength_cost(const std::vector<JointRead>& reads, const JointState& state, const BeamModel& beams,
+                            const Eigen::Vector3d& p_W_X) {
+  return fit_signal_strength(reads, state, beams, p_W_X).cost;
 }
 
 }  // namespace rfmvo
