@@ -57,6 +57,26 @@ TEST(SignalStrength, ATagsOwnSensitivityDoesNotMatter) {
   EXPECT_NEAR(signal_strength_cost(w.problem.reads[0], w.truth, beams, place), before, 1e-9);
 }
 
+// The constant that the RSSI was made with, wherever the tag is; and a site of such tags makes places unlikely at which
+// it would have to be another sort of tag.
+TEST(SignalStrength, WhatTagsOfASiteAreLikeTellsHowFarOneIs) {
+  World w = make_world(1, 30, 1.0);
+  BeamModel beams = left_looking();
+  set_rssi(w, beams, 0);
+  const Eigen::Vector3d tag = w.truth.tags[0].p_W_X, far = tag + Eigen::Vector3d(-4.0, 0.0, 0.0);
+  const auto cost = [&](const Eigen::Vector3d& p) { return fit_signal_strength(w.problem.reads[0], w.truth, beams, p); };
+  EXPECT_NEAR(cost(tag).level_db, -35.0, 1e-6);
+  const double before = cost(far).cost - cost(tag).cost;
+  beams.level_db = -35.0;
+  EXPECT_NEAR(cost(tag).cost, 0.0, 1e-6);
+  const double excess_db = cost(far).level_db + 35.0;
+  EXPECT_GT(excess_db, 12.0);
+  EXPECT_GT(cost(far).cost - cost(tag).cost, before + 1.5);
+  // Where the site is like that, the far place is as likely as it was.
+  beams.level_db = -35.0 + excess_db;
+  EXPECT_LT(cost(far).cost - cost(tag).cost, before);
+}
+
 TEST(SignalStrength, ReadsAtOnePlaceCountOnce) {
   World w = make_world(1, 20, 1.0);
   const BeamModel beams = left_looking();
