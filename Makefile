@@ -3,6 +3,7 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := build
 JOBS ?= $(shell nproc)
 CCACHE := $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+# Without these ccache keeps nothing that is compiled with a precompiled header.
 export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 
 rfmvo := build/release/host/rfmvo

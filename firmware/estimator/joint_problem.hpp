@@ -78,7 +78,7 @@ struct JointProblem {
   double reference_scale_m =
       1.0;                     // metres per unit of V for the widths of priors and correlations; fixed while solving
   StructuredShape structured;  // of the phase error
-  double flip_probability = 0.003;    // of a pi flip
+  double flip_probability = 0.003;    // share of reads that are turned by pi; they come in bursts
   double outlier_probability = 0.01;  // of a phase that tells nothing
 };
 

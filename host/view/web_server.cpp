@@ -27,9 +27,6 @@ Bytes framed(const std::string& message) {
   return bytes;
 }
 
-// libwebsockets waits for an address that this machine does not have, as for a cable that is not plugged in yet.
-bool can_bind(const std::string& address, std::uint16_t port) { return bool(net::listen_on(address, port)); }
-
 struct Message {
   std::uint64_t version = 0;
   Bytes bytes;
@@ -182,7 +179,8 @@ Result<std::unique_ptr<WebServer>> WebServer::create(const WebSettings& settings
   lws_set_log_level(0, nullptr);
   const Error refused{ErrorCode::kUnsupported, "cannot be listened on (taken, or not an address of this machine)",
                       settings.address + ":" + std::to_string(settings.port)};
-  if (!can_bind(settings.address, settings.port)) return refused;
+  // libwebsockets waits for an address that this machine does not have, as for a cable that is not plugged in yet.
+  if (!net::listen_on(settings.address, settings.port)) return refused;
   auto impl = std::make_unique<Impl>();
   impl->settings = settings;
   impl->page = framed(page);

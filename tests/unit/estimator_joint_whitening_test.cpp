@@ -161,6 +161,24 @@ TEST(ChainWhitening, ABurstOfFlipsIsRecognisedReadByRead) {
   EXPECT_LT(w.cost - clean.cost, 2.0 * std::log(0.997 / 0.003));  // not six times the odds of one
 }
 
+TEST(ChainWhitening, ABurstEndsWithThePortsReads) {
+  std::mt19937 random(38);
+  Chain chain = straight_chain(20, 0.015, 0.022 * 0.022);
+  chain.world.problem.flip_probability = 0.003;
+  add_errors(chain, random);
+  Chain flipped = chain;
+  for (std::size_t i = 16; i < 20; ++i) flipped.reads()[i].phase_rad += joint_scene::kPi;
+  // The flipped reads on the first port, the others on a second one like it.
+  Chain both = flipped;
+  const PortState port = both.world.truth.ports[0];
+  both.world.truth.ports.assign(2, port);
+  for (JointRead read : chain.reads()) {
+    read.port = 1;
+    both.reads().push_back(read);
+  }
+  EXPECT_NEAR(both.whitened().cost, flipped.whitened().cost + chain.whitened().cost, 1e-9);
+}
+
 TEST(ChainWhitening, AnOutlierHasNoWeightAndNoFollowers) {
   std::mt19937 random(35);
   Chain chain = straight_chain(40, 0.015, 0.022 * 0.022);
