@@ -65,7 +65,8 @@ reproduce: build
 test: build
 	@ctest --test-dir build/release --output-on-failure -j 2
 
-test-asan: packages
+test-asan:
+	@cmake/install-packages.sh clang libclang-rt-14-dev
 	@$(MAKE) --no-print-directory compile-asan
 	@ctest --test-dir build/asan --output-on-failure -j 2
 

@@ -28,7 +28,8 @@ Status run(const Arguments& arguments) {
   unknown.time_offset_sigma_s =
       arguments.time_offset_sigma_s.value_or(bound::settings_for(arguments.simulation).time_offset_sigma_s);
   known.known_path = true;
-  const bound::BoundPair bounds{bound::bound_of(world.value(), unknown), bound::bound_of(world.value(), known)};
+  bound::RunBounds bounds{bound::bound_of(world.value(), unknown), bound::bound_of(world.value(), known), {}};
+  bounds.lobes = bound::lobes_of(world.value(), bounds.unknown);
   std::fputs(bound::to_table(bounds).c_str(), stdout);
   return arguments.json.empty() ? Done{} : write_whole_file(arguments.json, bound::to_json(bounds));
 }

@@ -37,6 +37,7 @@ void add_bounds(const simulate::Options& simulation, SeedRun& result) {
   if (!world) return;
   bound::Settings settings = bound::settings_for(simulation);
   result.bound = bound::bound_of(world.value(), settings);
+  result.lobes = bound::lobes_of(world.value(), *result.bound);
   settings.known_path = true;
   if (result.known_path) result.known_path_bound = bound::bound_of(world.value(), settings);
 }

@@ -8,6 +8,7 @@
 
 #include "base/result.hpp"
 #include "bound/bound.hpp"
+#include "bound/lobes.hpp"
 #include "evaluate/evaluation.hpp"
 #include "montecarlo/workers.hpp"
 #include "simulate/simulation.hpp"
@@ -41,6 +42,7 @@ struct SeedRun {
   std::optional<evaluate::Evaluation> known_path;
   // Nothing: this kind of run has none (bound/world.hpp); the second one only with known_path.
   std::optional<bound::Bound> bound, known_path_bound;
+  std::optional<bound::Lobes> lobes;  // beside `bound`
   Timing timing;
 };
 

@@ -25,7 +25,7 @@ double quantile(std::vector<double> values, double share) {
 
 // Tags that have both.
 struct Compared {
-  std::vector<double> errors_m, bounds_m;
+  std::vector<double> errors_m, bounds_m, with_lobes_m, wrong_probability;
 };
 
 struct Pool {
@@ -53,12 +53,16 @@ void add_tag(const evaluate::TagEvaluation& tag, Statistics& s, Pool& pool) {
   if (*tag.camera_relative_error_m > kMatters_m) ++s.unflagged_wrong_that_matters;
 }
 
-// Both lists are in the truth's order.
-void add_bound(const evaluate::TagsEvaluation& tags, const bound::Bound& bound, Compared& compared) {
+// All lists are in the truth's order.
+void add_bound(const evaluate::TagsEvaluation& tags, const bound::Bound& bound, const bound::Lobes* lobes,
+               Compared& compared) {
   for (std::size_t i = 0; i < tags.tags.size(); ++i) {
     if (!tags.tags[i].camera_relative_error_m || !bound.tags[i].sigma_m) continue;
     compared.bounds_m.push_back(*bound.tags[i].sigma_m);
     compared.errors_m.push_back(*tags.tags[i].camera_relative_error_m);
+    if (lobes == nullptr) continue;
+    compared.with_lobes_m.push_back(*bound::rmse_with_lobes_m(bound.tags[i], lobes->tags[i]));
+    compared.wrong_probability.push_back(lobes->tags[i].wrong_probability);
   }
 }
 
@@ -71,9 +75,10 @@ void add_run(const SeedRun& run, Statistics& s, Pool& pool) {
   }
   if (run.bound) {
     s.unbounded += run.bound->unbounded;
-    add_bound(run.evaluation.tags, *run.bound, pool.unknown_path);
+    add_bound(run.evaluation.tags, *run.bound, run.lobes ? &*run.lobes : nullptr, pool.unknown_path);
   }
-  if (run.known_path && run.known_path_bound) add_bound(run.known_path->tags, *run.known_path_bound, pool.known_path);
+  if (run.known_path && run.known_path_bound)
+    add_bound(run.known_path->tags, *run.known_path_bound, nullptr, pool.known_path);
   if (run.evaluation.scale.relative_error) {
     pool.scale_errors.push_back(*run.evaluation.scale.relative_error);
     if (run.bound && run.bound->scale_relative) pool.scale_bounds.push_back(*run.bound->scale_relative);
@@ -117,6 +122,11 @@ Statistics statistics_of(const std::vector<SeedRun>& runs, const Options& option
     s.bound_rmse_m = bounds->rmse;
     s.bound_median_m = bounds->median;
     s.ratio = evaluate::summarise(pool.unknown_path.errors_m)->rmse / bounds->rmse;
+  }
+  if (const auto bounds = evaluate::summarise(pool.unknown_path.with_lobes_m)) {
+    s.lobe_bound_rmse_m = bounds->rmse;
+    s.lobe_ratio = evaluate::summarise(pool.unknown_path.errors_m)->rmse / bounds->rmse;
+    s.lobe_wrong_share = evaluate::summarise(pool.unknown_path.wrong_probability)->mean;
   }
   if (const auto bounds = evaluate::summarise(pool.known_path.bounds_m)) s.known_path_bound_rmse_m = bounds->rmse;
   if (const auto known = evaluate::summarise(pool.known_path_m)) s.known_path_rmse_m = known->rmse;

@@ -35,6 +35,9 @@ struct Statistics {
   // root mean square error of these tags over it.
   std::optional<double> bound_rmse_m, bound_median_m, ratio;
   std::size_t unbounded = 0;  // tags without a bound, located or not
+  // The same with the lobes that phases alone leave (bound/lobes.hpp), over the same tags; and the share of them that
+  // an observer who knows all else would put at a wrong place.
+  std::optional<double> lobe_bound_rmse_m, lobe_ratio, lobe_wrong_share;
   std::optional<double> known_path_rmse_m, known_path_bound_rmse_m;
   std::optional<double> coverage95, nees_mean, nees_median;
   // Of the recovered path against the true one: RMS over seeds of |Sim(3) scale - 1|.

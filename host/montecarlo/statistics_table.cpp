@@ -51,6 +51,10 @@ std::string together(const Statistics& s) {
   text += fmt::format("  bound         rms {} cm, median {}; error over bound {}; {} tags without a bound\n",
                       number(s.bound_rmse_m, kCentimetre, 2), number(s.bound_median_m, kCentimetre, 2),
                       number(s.ratio, 1.0, 2), s.unbounded);
+  if (s.lobe_bound_rmse_m)
+    text += fmt::format("  with lobes    rms {} cm; error over it {}; {} % of the tags at a wrong place\n",
+                        number(s.lobe_bound_rmse_m, kCentimetre, 2), number(s.lobe_ratio, 1.0, 2),
+                        number(s.lobe_wrong_share, kPercent, 1));
   if (s.known_path_rmse_m)
     text += fmt::format("  path known    rms {} cm, bound {}\n", number(s.known_path_rmse_m, kCentimetre, 2),
                         number(s.known_path_bound_rmse_m, kCentimetre, 2));

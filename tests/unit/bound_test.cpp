@@ -111,7 +111,8 @@ TEST(Bound, StraightLevelPathWithOneAntennaHasNone) {
     EXPECT_EQ(bound.unbounded, 1U);
     EXPECT_TRUE(bound.tags[0].covariance_C_m2.allFinite());
   }
-  const auto json = nlohmann::json::parse(to_json({bound_of(world, {}), bound_of(world, known_path())}));
+  const Bound bound = bound_of(world, {});
+  const auto json = nlohmann::json::parse(to_json({bound, bound_of(world, known_path()), lobes_of(world, bound)}));
   EXPECT_TRUE(json.at("bound_rmse_m").is_null());
   EXPECT_TRUE(json.at("tags")[0].at("sigma_m").is_null());
 }
