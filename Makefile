@@ -65,8 +65,7 @@ reproduce: build
 test: build
 	@ctest --test-dir build/release --output-on-failure -j 2
 
-test-asan:
-	@cmake/install-packages.sh clang libclang-rt-14-dev
+test-asan: packages
 	@$(MAKE) --no-print-directory compile-asan
 	@ctest --test-dir build/asan --output-on-failure -j 2
 

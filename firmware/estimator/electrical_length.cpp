@@ -24,7 +24,7 @@ ElectricalLength electrical_length_from_hops(const std::vector<std::vector<Timed
     double sum = 0.0;
     for (const Pair& p : pairs) sum += std::cos(p.phase_rad - p.term_rad_m * length);
     sum /= static_cast<double>(pairs.size());
-    if (sum > best.coherence) best = {length, sum};
+    if (sum > best.coherence) best = {length, sum, sum * std::sqrt(2.0 * static_cast<double>(pairs.size()))};
   }
   return best;
 }

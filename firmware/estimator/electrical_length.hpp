@@ -11,6 +11,8 @@ namespace rfmvo {
 struct ElectricalLength {
   double length_m = 0.0;   // includes the mean distance to the tags (the wave travels that too)
   double coherence = 0.0;  // 0..1: how well one length explains the hops; 0 = no hops seen
+  // Coherence in sigmas of what hops of random phases show at one length. The best of many lengths reaches 3 in noise.
+  double significance = 0.0;
 };
 
 // chains: reads of one (tag, port) each, in time order, with their times in seconds.

@@ -124,7 +124,8 @@ void JointSegment::estimate_noise(const std::vector<Candidate>& some, bool shape
   double typical = 0.0;
   for (const TagState& t : of_known.tags) typical += t.structured_sigma_rad / static_cast<double>(of_known.tags.size());
   for (auto& [epc, tag] : tags_) {
-    const auto found = std::find_if(decided.begin(), decided.end(), [&](const Candidate& c) { return c.epc == epc; });
+    const auto found =
+        std::find_if(decided.begin(), decided.end(), [&epc = epc](const Candidate& c) { return c.epc == epc; });
     const double sigma = found == decided.end()
                              ? typical
                              : of_known.tags[static_cast<std::size_t>(found - decided.begin())].structured_sigma_rad;

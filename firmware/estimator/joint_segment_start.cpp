@@ -10,6 +10,7 @@ namespace rfmvo {
 namespace {
 
 constexpr double kMeanTagDistance_m = 2.0;  // part of what hops measure as electrical length
+constexpr double kTypicalLength_m = 6.0;    // cable and reader: where nothing is known, better than none
 
 }  // namespace
 
@@ -22,9 +23,10 @@ void JointSegment::estimate_electrical_lengths() {
         chain.push_back({r.time_s, r.read.phase_rad, r.read.geometry.frequency_term_rad_m});
     }
     const ElectricalLength hops = electrical_length_from_hops(chains);
-    constexpr double kMinCoherence = 0.2;
-    if (hops.coherence > kMinCoherence)
-      shared_.ports[p].electrical_length_m = std::max(0.0, hops.length_m - kMeanTagDistance_m);
+    // A length that noise made up leads the whole start astray: it looks as sure as a true one.
+    constexpr double kMinSignificance = 4.0;
+    shared_.ports[p].electrical_length_m =
+        hops.significance > kMinSignificance ? std::max(0.0, hops.length_m - kMeanTagDistance_m) : kTypicalLength_m;
   }
 }
 

@@ -87,6 +87,22 @@ TEST(ElectricalLength, DoesNotMindTheOffsetsOfTagsNorHopsFarApartInTime) {
   EXPECT_EQ(electrical_length_from_hops({chain}).coherence, 0.0);
 }
 
+// 100 times 40 hops of random phases: one length or another always seems to explain them a little.
+TEST(ElectricalLength, ThatNoiseMadeUpIsNotSignificant) {
+  std::mt19937 random(75);
+  std::uniform_real_distribution<double> any(-joint_scene::kPi, joint_scene::kPi);
+  std::uniform_int_distribution<int> channel(0, 15);
+  int claimed = 0;
+  for (int run = 0; run < 100; ++run) {
+    std::vector<TimedPhase> chain;
+    for (int i = 0; i < 40; ++i)
+      chain.push_back({0.05 * i, any(random), joint_scene::frequency_term_rad_m(920e6 + 0.25e6 * channel(random))});
+    claimed += electrical_length_from_hops({chain}).significance > 4.0 ? 1 : 0;
+  }
+  EXPECT_EQ(claimed, 0);
+  EXPECT_GT(electrical_length_from_hops({hopping_chain(8.0, 1.5, 0.3, random)}).significance, 4.0);
+}
+
 TEST(ElectricalLength, IsNotClaimedWithoutHops) {
   std::mt19937 random(72);
   EXPECT_EQ(electrical_length_from_hops({}).coherence, 0.0);
