@@ -11,10 +11,14 @@
 namespace rfmvo {
 
 struct AntennaCalibration {
-  std::uint8_t port = 1;                                        // reader port, 1-based
-  Eigen::Vector3d p_C_A_m = Eigen::Vector3d::Zero();            // phase centre in the camera frame (the lever arm)
-  Eigen::Vector3d boresight_C = Eigen::Vector3d::UnitZ();       // unit vector of the main beam in the camera frame
-  double lever_arm_sigma_m = 0.005;                             // 1 sigma per axis of p_C_A_m
+  std::uint8_t port = 1;                                   // reader port, 1-based
+  Eigen::Vector3d p_C_A_m = Eigen::Vector3d::Zero();       // phase centre in the camera frame (the lever arm)
+  Eigen::Vector3d boresight_C = Eigen::Vector3d::UnitZ();  // unit vector of the main beam in the camera frame
+  Eigen::Vector3d lever_arm_sigma_m = Eigen::Vector3d::Constant(0.005);  // 1 sigma of p_C_A_m, axis by axis
+  // Of cable, reader and antenna together, beyond what the wave travels in the air: turns the phase with the
+  // channel's frequency. The default sigma says that nothing is known.
+  double electrical_length_m = 0.0, electrical_length_sigma_m = kElectricalLengthUnknown_m;
+  static constexpr double kElectricalLengthUnknown_m = 40.0;
 };
 
 struct Calibration {

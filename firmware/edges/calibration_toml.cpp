@@ -16,6 +16,7 @@ constexpr double kMaxSide_px = 16384;
 constexpr double kMaxFocalLength_px = 1e6;
 constexpr double kMaxDistortion = 100;
 constexpr double kMaxArm_m = 10;  // a larger one was written in mm
+constexpr double kMaxElectricalLength_m = 200;
 constexpr std::size_t kMaxAntennas = 32;
 // What a hand-written unit vector may be off; it is normalised. Below kExact it is left alone, so that
 // what we wrote comes back to the last bit.
@@ -57,6 +58,24 @@ class Section {
       if (good) out[i] = checked(key, *node, *list->get(i)->value<double>(), unit, -max, max, 0.0);
     }
     if (!good) return fail(key, *node, "expects a list of " + std::to_string(N) + " numbers" + in(unit)), fallback;
+    return out;
+  }
+
+  // A number for all three axes, or one for each.
+  Eigen::Vector3d one_or_three(std::string_view key, std::string_view unit, double max,
+                               const Eigen::Vector3d& fallback) {
+    const toml::node* node = find(key);
+    if (node == nullptr || error_) return fallback;
+    if (node->is_number()) return Eigen::Vector3d::Constant(number(key, unit, 0, max, fallback.x()));
+    const toml::array* list = node->as_array();
+    Eigen::Vector3d out = fallback;
+    bool good = list != nullptr && list->size() == 3;
+    for (int i = 0; good && i < 3; ++i) {
+      const toml::node& entry = *list->get(static_cast<std::size_t>(i));
+      good = entry.is_number();
+      if (good) out[i] = checked(key, *node, *entry.value<double>(), unit, 0, max, fallback[i]);
+    }
+    if (!good) return fail(key, *node, "expects a number or a list of three" + in(unit)), fallback;
     return out;
   }
 
@@ -177,7 +196,10 @@ Result<AntennaCalibration> antenna_of(const toml::table& table, const std::strin
   const auto b = s.unit_vector<3>("boresight_C", {0.0, 0.0, 1.0});
   a.p_C_A_m = {p[0], p[1], p[2]};
   a.boresight_C = {b[0], b[1], b[2]};
-  a.lever_arm_sigma_m = s.number("lever_arm_sigma_m", "m", 0, kMaxArm_m, a.lever_arm_sigma_m);
+  a.lever_arm_sigma_m = s.one_or_three("lever_arm_sigma_m", "m", kMaxArm_m, a.lever_arm_sigma_m);
+  a.electrical_length_m = s.number("electrical_length_m", "m", -kMaxElectricalLength_m, kMaxElectricalLength_m, 0.0);
+  a.electrical_length_sigma_m =
+      s.number("electrical_length_sigma_m", "m", 0, kMaxElectricalLength_m, a.electrical_length_sigma_m);
   s.reject_unknown();
   if (s.error()) return *s.error();
   return a;
@@ -265,7 +287,9 @@ std::string to_toml(const Calibration& calibration) {
     out += "\n[[antenna]]\nport = " + std::to_string(a.port) + "\n";
     out += "p_C_A_m = " + list_of(a.p_C_A_m) + "\n";
     out += "boresight_C = " + list_of(a.boresight_C) + "\n";
-    out += "lever_arm_sigma_m = " + text_of(a.lever_arm_sigma_m) + "\n";
+    out += "lever_arm_sigma_m = " + list_of(a.lever_arm_sigma_m) + "\n";
+    out += "electrical_length_m = " + text_of(a.electrical_length_m) + "\n";
+    out += "electrical_length_sigma_m = " + text_of(a.electrical_length_sigma_m) + "\n";
   }
   return out;
 }

@@ -59,9 +59,9 @@ struct KnotInterval {
 
 struct JointPriors {
   double time_offset_sigma_s = 0.005;
-  double electrical_length_m = 0.0, electrical_length_sigma_m = 10.0;
-  std::vector<Eigen::Vector3d> lever_arm_C;      // per port
-  std::vector<double> lever_arm_sigma_m;         // per port,
+  std::vector<double> electrical_length_m, electrical_length_sigma_m;  // per port
+  std::vector<Eigen::Vector3d> lever_arm_C;                            // per port, m
+  std::vector<Eigen::Vector3d> lever_arm_sigma_m;                      // per port, axes of C; above 0,
   double lever_arms_common_sigma_m = 0.0;        // and of all together: the camera in the frame of the antennas
   double scale_walk_per_sqrt_m = 0.0035;         // of epsilon
   double rotation_walk_rad_per_sqrt_m = 0.0044;  // of theta, per axis

@@ -49,7 +49,8 @@ void JointSegment::forget_solution() {
   structured_ = {.length_m = config_.joint.correlation_length_m};
   misreads_ = misreads_configured();
   shared_ = {};
-  for (const AntennaCalibration& antenna : calibration_.antennas) shared_.ports.push_back({0.0, 0.0, antenna.p_C_A_m});
+  for (const AntennaCalibration& antenna : calibration_.antennas)
+    shared_.ports.push_back({0.0, antenna.electrical_length_m, antenna.p_C_A_m});
   shared_.knots.resize(2);
 }
 
@@ -113,15 +114,16 @@ JointProblem JointSegment::problem_for(const std::vector<Epc>& epcs, double refe
   problem.outlier_probability = misreads_.outliers;
   JointPriors& priors = problem.priors;
   priors.time_offset_sigma_s = config_.joint.time_offset_sigma_s;
-  priors.electrical_length_m = 0.0;
-  priors.electrical_length_sigma_m = 40.0;
   priors.scale_walk_per_sqrt_m = scale_walk_per_sqrt_m_;
   priors.rotation_walk_rad_per_sqrt_m = rotation_walk_rad_per_sqrt_m_;
   priors.position_walk_m_per_sqrt_m = position_walk_m_per_sqrt_m_;
   priors.lever_arms_common_sigma_m = calibration_.camera_sigma_m;
   for (const AntennaCalibration& antenna : calibration_.antennas) {
     priors.lever_arm_C.push_back(antenna.p_C_A_m);
-    priors.lever_arm_sigma_m.push_back(std::max(antenna.lever_arm_sigma_m, 1e-4));
+    constexpr double kLeastSigma_m = 1e-4;
+    priors.lever_arm_sigma_m.push_back(antenna.lever_arm_sigma_m.cwiseMax(kLeastSigma_m));
+    priors.electrical_length_m.push_back(antenna.electrical_length_m);
+    priors.electrical_length_sigma_m.push_back(std::max(antenna.electrical_length_sigma_m, kLeastSigma_m));
   }
   for (const Epc& epc : epcs) {
     std::vector<JointRead>& reads = problem.reads.emplace_back();

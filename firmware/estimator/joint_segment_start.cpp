@@ -16,6 +16,8 @@ constexpr double kTypicalLength_m = 6.0;    // cable and reader: where nothing i
 
 void JointSegment::estimate_electrical_lengths() {
   for (std::size_t p = 0; p < shared_.ports.size(); ++p) {
+    constexpr double kCalibrated_m = 2.0;  // hops tell no better than that: the tags' distances are in it
+    if (calibration_.antennas[p].electrical_length_sigma_m < kCalibrated_m) continue;
     std::vector<std::vector<TimedPhase>> chains;
     for (const auto& [epc, tag] : tags_) {
       std::vector<TimedPhase>& chain = chains.emplace_back();

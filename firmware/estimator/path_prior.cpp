@@ -105,22 +105,21 @@ double add_interval(const JointProblem& problem, const JointState& state, const 
   return cost;
 }
 
-// Lever arms of independent errors D^-1 = diag(sigma^2) and one error common to all, per axis:
+// Lever arms of independent errors D^-1 = diag(sigma^2) and one error common to all, axis by axis:
 // (D^-1 + c^2 1 1^T)^-1 = D - D 1 1^T D c^2 / (1 + c^2 1^T D 1).
 double add_lever_arm_prior(const JointPriors& priors, const JointState& state, const SharedLayout& layout,
                            Eigen::MatrixXd* H, Eigen::VectorXd* g) {
-  Eigen::VectorXd D(layout.ports);
-  for (int p = 0; p < layout.ports; ++p) D[p] = std::pow(priors.lever_arm_sigma_m[static_cast<std::size_t>(p)], -2.0);
   const double common = std::pow(priors.lever_arms_common_sigma_m, 2.0);
-  const Eigen::MatrixXd information =
-      Eigen::MatrixXd(D.asDiagonal()) - common / (1.0 + common * D.sum()) * D * D.transpose();
   double cost = 0.0;
   for (int i = 0; i < 3; ++i) {
-    Eigen::VectorXd residual(layout.ports);
+    Eigen::VectorXd D(layout.ports), residual(layout.ports);
     for (int p = 0; p < layout.ports; ++p) {
       const auto index = static_cast<std::size_t>(p);
+      D[p] = std::pow(priors.lever_arm_sigma_m[index][i], -2.0);
       residual[p] = state.ports[index].lever_arm_C[i] - priors.lever_arm_C[index][i];
     }
+    const Eigen::MatrixXd information =
+        Eigen::MatrixXd(D.asDiagonal()) - common / (1.0 + common * D.sum()) * D * D.transpose();
     const Eigen::VectorXd pull = information * residual;
     cost += 0.5 * residual.dot(pull);
     for (int a = 0; H != nullptr && a < layout.ports; ++a) {
@@ -143,7 +142,8 @@ double add_path_prior(const JointProblem& problem, const JointState& state, cons
   time.add(SharedLayout::kTimeOffset, 1.0);
   cost += time.close(state.time_offset_s, priors.time_offset_sigma_s, H, g);
   for (int p = 0; p < layout.ports; ++p) {
-    const PortState& port = state.ports[static_cast<std::size_t>(p)];
+    const auto index = static_cast<std::size_t>(p);
+    const PortState& port = state.ports[index];
     if (p > 0) {
       // Offsets are angles: nothing is known, the factor only keeps the system definite.
       constexpr double kOffsetSigma_rad = 20.0;
@@ -155,7 +155,8 @@ double add_path_prior(const JointProblem& problem, const JointState& state, cons
     }
     Factor length;
     length.add(layout.port(p) + 1, 1.0);
-    cost += length.close(port.electrical_length_m - priors.electrical_length_m, priors.electrical_length_sigma_m, H, g);
+    cost += length.close(port.electrical_length_m - priors.electrical_length_m[index],
+                         priors.electrical_length_sigma_m[index], H, g);
   }
   return cost + add_lever_arm_prior(priors, state, layout, H, g);
 }

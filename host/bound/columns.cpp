@@ -33,7 +33,8 @@ Columns::Columns(const World& world, const Settings& settings)
   ports_ = size();
   for (int port = 0; port < ports; ++port) {
     add(1, settings.length_sigma_m);
-    add(3, settings.known_lever_arms ? kKnown : std::max(world.lever_arm_sigma_m, kKnown));
+    for (const double sigma_m : world.lever_arm_sigma_m)
+      add(1, settings.known_lever_arms ? kKnown : std::max(sigma_m, kKnown));
   }
   if (!settings.known_path) add_path();
 }

@@ -38,8 +38,8 @@ struct Tag {
 struct World {
   std::vector<Read> reads;
   std::vector<Tag> tags;
-  std::vector<Eigen::Vector3d> lever_arms_C_m;  // by port
-  double lever_arm_sigma_m = 0.005;             // 1 sigma per axis of what the estimator is told
+  std::vector<Eigen::Vector3d> lever_arms_C_m;                           // by port
+  Eigen::Vector3d lever_arm_sigma_m = Eigen::Vector3d::Constant(0.005);  // 1 sigma of what the estimator is told
   std::function<Rigid3(double)> T_S_C;
   std::vector<double> frame_times_s;  // increasing
   StructuredError structured;

@@ -7,13 +7,13 @@ namespace rfmvo::simulate {
 constexpr double kFrameRate_hz = 30.0;  // the paper's camera, Section VII-A
 
 std::vector<std::string> scene_names() {
-  return {"aisle",         "wall",         "S3",         "S6",        "straight", "straight1ant", "oneantenna",
-          "stackedmirror", "purerotation", "standstill", "onetag",    "tags300",  "shelf05",      "shelf1",
-          "shelf1rs",      "shelfturn",    "shelfstop",  "shelfdiag", "crowd",    "dark",         "corridor"};
+  return {"aisle",        "wall",       "S3",     "S6",      "straight", "straight1ant", "oneantenna", "stackedmirror",
+          "purerotation", "standstill", "onetag", "tags300", "shelf05",  "shelf1",       "shelf1rs",   "shelfturn",
+          "shelfstop",    "shelfdiag",  "crowd",  "dark",    "corridor", "backandforth"};
 }
 
 bool is_degenerate_scene(const std::string& name) {
-  return is_stacked_scene(name) && name != "S3" && name != "S6" && name != "tags300";
+  return is_stacked_scene(name) && name != "S3" && name != "S6" && name != "tags300" && name != "backandforth";
 }
 
 namespace {

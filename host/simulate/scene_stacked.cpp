@@ -1,5 +1,6 @@
 // S3 and S6, the scenes of the error bounds (DESIGN 2, FIELD 1): two antennas stacked 1.0 m, 20 tags
-// beside a 4 m pass. And the degenerate relatives in which something is NOT observable.
+// beside a 4 m pass; `backandforth`, the drive of a calibration; and the degenerate relatives in which something is
+// NOT observable.
 #include <cmath>
 
 #include "base/units.hpp"
@@ -14,6 +15,7 @@ constexpr double kSpeed_m_s = 0.5;
 constexpr double kWeave_m = 0.2;          // amplitude, one period over the pass
 constexpr double kHalfStack_m = 0.5;      // antennas above and below the camera
 constexpr double kTurnRate_rad_s = 0.15;  // purerotation
+constexpr double kThereAndBack_s = 15.0, kDrive_s = 60.0, kBackAndForthWeave_m = 0.35;  // backandforth
 
 struct Shape {
   double weave_m = kWeave_m;
@@ -21,7 +23,7 @@ struct Shape {
   std::size_t tags = 20;
   std::size_t antennas = 2;
   bool forward_looking = false;  // beams along the path, tags on both sides: nothing tells left from right
-  enum { kPass, kTurn, kStand } motion = kPass;
+  enum { kPass, kTurn, kStand, kBackAndForth } motion = kPass;
 };
 
 Shape shape_of(const std::string& name) {
@@ -32,6 +34,7 @@ Shape shape_of(const std::string& name) {
   if (name == "stackedmirror") s.forward_looking = true;
   if (name == "purerotation") s.motion = Shape::kTurn;
   if (name == "standstill") s.motion = Shape::kStand;
+  if (name == "backandforth") s.motion = Shape::kBackAndForth;
   if (name == "onetag") s.tags = 1;
   if (name == "tags300") s.tags = 300;
   return s;
@@ -45,6 +48,15 @@ Rigid3 body_pose(const Shape& shape, double t_s) {
     const double half_time_s = 0.5 * kLength_m / kSpeed_m_s;
     const double yaw_rad = kTurnRate_rad_s * (t_s - half_time_s);
     return cart_pose({mid_x_m, 0, 0}, std::cos(yaw_rad), std::sin(yaw_rad));
+  }
+  if (shape.motion == Shape::kBackAndForth) {
+    // To and fro along the shelf, 1 m/s at most; the weave is out of step, so that no pass is like another. The cart
+    // drives backwards as well as forwards: its nose stays near x.
+    const double rate_rad_s = kTwoPi / kThereAndBack_s, weave_rad_s = 0.73 * rate_rad_s;
+    const double yaw_rad = 0.35 * std::sin(1.31 * rate_rad_s * t_s);
+    return cart_pose(
+        {mid_x_m * (1.0 - std::cos(rate_rad_s * t_s)), kBackAndForthWeave_m * std::sin(weave_rad_s * t_s), 0},
+        std::cos(yaw_rad), std::sin(yaw_rad));
   }
   const double x_m = kSpeed_m_s * t_s;
   const double wave_rad_m = kTwoPi / kLength_m;
@@ -79,7 +91,7 @@ Scene make_stacked_scene(const Options& options) {
   Scene scene;
   scene.name = options.scene;
   scene.structured_sigma_rad = shape.structured_sigma_rad;
-  scene.frame_times_s = regular_frame_times(kLength_m / kSpeed_m_s);
+  scene.frame_times_s = regular_frame_times(shape.motion == Shape::kBackAndForth ? kDrive_s : kLength_m / kSpeed_m_s);
   scene.calibration = calibration_of(shape);
   // tags300: a fast reader mode, two reads of each tag a second.
   if (options.scene == "tags300") scene.read_rate_hz = 2.0 * static_cast<double>(shape.tags);

@@ -25,7 +25,7 @@ Calibration nominal_of(const Scene& scene, std::uint64_t seed) {
   calibration.camera_rotation_sigma_rad = scene.frame_rotation_sigma_rad;
   Random random(seed, "lever arm errors");
   for (AntennaCalibration& antenna : calibration.antennas) {
-    for (int i = 0; i < 3; ++i) antenna.p_C_A_m[i] += antenna.lever_arm_sigma_m * random.normal();
+    for (int i = 0; i < 3; ++i) antenna.p_C_A_m[i] += antenna.lever_arm_sigma_m[i] * random.normal();
   }
   return calibration;
 }

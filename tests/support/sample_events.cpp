@@ -46,8 +46,9 @@ Calibration sample_calibration() {
   Calibration c;
   c.camera = {640, 480, 501.1, 502.2 + 1e-13, 319.5, 0.1 + 0.2, {-0.28, 0.07, 1e-4, 1.0 / 3.0, 0.0}};
   c.T_B_C = {Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), Eigen::Vector3d(0.1, -1.0 / 3.0, 1e-17)};
-  c.antennas.push_back({1, {0.25, -0.1, 1.0 / 7.0}, Eigen::Vector3d(0.1, 0.2, 0.9).normalized(), 0.005});
-  c.antennas.push_back({2, {-0.25, 0.3, 0.0}, {0.0, 0.0, 1.0}, 1.0 / 300.0});
+  c.antennas.push_back({1, {0.25, -0.1, 1.0 / 7.0}, Eigen::Vector3d(0.1, 0.2, 0.9).normalized(), {0.005, 1.0 / 3.0, 0.0},
+                        7.0 / 3.0, 0.1});
+  c.antennas.push_back({2, {-0.25, 0.3, 0.0}, {0.0, 0.0, 1.0}, Eigen::Vector3d::Constant(1.0 / 300.0)});
   return c;
 }
 

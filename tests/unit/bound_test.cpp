@@ -102,7 +102,7 @@ TEST(Bound, MoreTagsAreNeverWorseForTheFirstAndForTheScale) {
 TEST(Bound, StraightLevelPathWithOneAntennaHasNone) {
   World world = world_with(straight_pose, 4.0, {Eigen::Vector3d::Zero()});
   world.drift = *simulate::find_drift_class("NOMINAL");
-  world.lever_arm_sigma_m = 0.005;
+  world.lever_arm_sigma_m.setConstant(0.005);
   add_tag(world, {2.0, 1.5, 0.4}, 60, 0.05);
   for (const Settings& settings : {Settings{}, known_path()}) {
     const Bound bound = bound_of(world, settings);

@@ -28,7 +28,7 @@ inline World world_with(std::function<Rigid3(double)> pose, double length_m, std
   world.T_S_C = std::move(pose);
   for (int k = 0; k <= 30.0 * length_m / kSpeed_m_s; ++k) world.frame_times_s.push_back(k / 30.0);
   world.lever_arms_C_m = std::move(lever_arms);
-  world.lever_arm_sigma_m = 0.0;
+  world.lever_arm_sigma_m.setZero();
   world.structured.sigma_rad = 0.0;
   world.drift = *simulate::find_drift_class("PERFECT");
   return world;
@@ -51,7 +51,7 @@ inline void add_tag(World& world, const Eigen::Vector3d& p_S_X_m, int reads_per_
 // Two antennas stacked 1 m, a weave, five tags.
 inline World stacked_world(std::size_t tags = 5) {
   World world = world_with(weaving_pose, 4.0, {{0.0, -0.5, 0.0}, {0.0, 0.5, 0.0}});
-  world.lever_arm_sigma_m = 0.005;
+  world.lever_arm_sigma_m.setConstant(0.005);
   world.structured.sigma_rad = 0.3;
   world.drift = *simulate::find_drift_class("NOMINAL");
   for (std::size_t n = 0; n < tags; ++n) {

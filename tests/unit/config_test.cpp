@@ -139,6 +139,8 @@ TEST(CalibrationToml, WritingAndReadingGivesTheSameBits) {
     EXPECT_EQ(b.antennas[i].p_C_A_m, c.antennas[i].p_C_A_m);
     EXPECT_EQ(b.antennas[i].boresight_C, c.antennas[i].boresight_C);
     EXPECT_EQ(b.antennas[i].lever_arm_sigma_m, c.antennas[i].lever_arm_sigma_m);
+    EXPECT_EQ(b.antennas[i].electrical_length_m, c.antennas[i].electrical_length_m);
+    EXPECT_EQ(b.antennas[i].electrical_length_sigma_m, c.antennas[i].electrical_length_sigma_m);
   }
 }
 
@@ -150,6 +152,39 @@ TEST(CalibrationToml, UnknownKeysNameTheNearest) {
             "cart.toml:8: antenna.p_C_A_m: is missing");
   EXPECT_EQ(calibration_error(kCamera + "[[antenna]]\nport=1\np_C_A_m=[1,2,3]\nlever_arm_sigma_mm=5\n"),
             "cart.toml:11: antenna.lever_arm_sigma_mm: unknown key; did you mean lever_arm_sigma_m?");
+}
+
+TEST(CalibrationToml, ALeverArmsSigmaIsOneNumberOrOneForEachAxis) {
+  const std::string antenna = kCamera + "[[antenna]]\nport=1\np_C_A_m=[0,0,0]\n";
+  const auto sigma_of = [&](const std::string& line) {
+    const auto calibration = parse_calibration(antenna + line, "cart.toml");
+    EXPECT_TRUE(calibration.ok()) << calibration.error().text();
+    return calibration.value().antennas.at(0).lever_arm_sigma_m;
+  };
+  EXPECT_EQ(sigma_of(""), Eigen::Vector3d::Constant(0.005));
+  EXPECT_EQ(sigma_of("lever_arm_sigma_m = 0.02\n"), Eigen::Vector3d::Constant(0.02));
+  EXPECT_EQ(sigma_of("lever_arm_sigma_m = [0.01, 0.005, 0]\n"), Eigen::Vector3d(0.01, 0.005, 0.0));
+  EXPECT_EQ(calibration_error(antenna + "lever_arm_sigma_m = [0.01, 0.005]\n"),
+            "cart.toml:11: antenna.lever_arm_sigma_m: expects a number or a list of three in m");
+  EXPECT_EQ(calibration_error(antenna + "lever_arm_sigma_m = [0.01, 0.005, 50]\n"),
+            "cart.toml:11: antenna.lever_arm_sigma_m: 50.0 is outside 0.0 to 10.0 m");
+  EXPECT_EQ(calibration_error(antenna + "lever_arm_sigma_m = \"5 mm\"\n"),
+            "cart.toml:11: antenna.lever_arm_sigma_m: expects a number or a list of three in m");
+}
+
+TEST(CalibrationToml, AnElectricalLengthIsUnknownUnlessStated) {
+  const std::string antenna = kCamera + "[[antenna]]\nport=1\np_C_A_m=[0,0,0]\n";
+  const auto silent = parse_calibration(antenna, "cart.toml");
+  ASSERT_TRUE(silent.ok()) << silent.error().text();
+  EXPECT_EQ(silent.value().antennas.at(0).electrical_length_m, 0.0);
+  EXPECT_EQ(silent.value().antennas.at(0).electrical_length_sigma_m, AntennaCalibration::kElectricalLengthUnknown_m);
+  const auto stated =
+      parse_calibration(antenna + "electrical_length_m = 7.25\nelectrical_length_sigma_m = 0.1\n", "cart.toml");
+  ASSERT_TRUE(stated.ok()) << stated.error().text();
+  EXPECT_EQ(stated.value().antennas.at(0).electrical_length_m, 7.25);
+  EXPECT_EQ(stated.value().antennas.at(0).electrical_length_sigma_m, 0.1);
+  EXPECT_EQ(calibration_error(antenna + "electrical_length_m = 7250\n"),
+            "cart.toml:11: antenna.electrical_length_m: 7250.0 is outside -200.0 to 200.0 m");
 }
 
 TEST(CalibrationToml, WrongValuesNameKeyAndUnit) {

@@ -32,7 +32,7 @@ double cost_of(const World& w, const JointState& state) {
 World world_at_rest() {
   World w = make_world(0, 0, 1.6);
   for (PortState& port : w.truth.ports) {
-    port.electrical_length_m = w.problem.priors.electrical_length_m;
+    port.electrical_length_m = w.problem.priors.electrical_length_m[0];
     port.offset_rad = 0.0;
   }
   return w;
@@ -188,6 +188,28 @@ TEST(PathPrior, LeverArmsMoveTogetherMoreEasilyThanApart) {
   }
   EXPECT_NEAR(cost_of(w, together), kShift_m * kShift_m / (kOwn_m * kOwn_m + 2.0 * 0.02 * 0.02), 1e-9);
   EXPECT_NEAR(cost_of(w, apart), kShift_m * kShift_m / (kOwn_m * kOwn_m), 1e-9);
+}
+
+// An arm that is known to 10 cm along the floor and to 5 mm in height gives way along the floor.
+TEST(PathPrior, EachAxisOfALeverArmIsAsStiffAsItsOwnSigma) {
+  World w = world_at_rest();
+  const Eigen::Vector3d sigma_m(0.1, 0.005, 0.02);
+  w.problem.priors.lever_arm_sigma_m[1] = sigma_m;
+  constexpr double kShift_m = 0.01;
+  for (int i = 0; i < 3; ++i) {
+    JointState state = w.truth;
+    state.ports[1].lever_arm_C[i] += kShift_m;
+    EXPECT_NEAR(cost_of(w, state), 0.5 * std::pow(kShift_m / sigma_m[i], 2), 1e-9) << i;
+  }
+}
+
+TEST(PathPrior, EachPortHasTheElectricalLengthThatItIsSaidToHave) {
+  World w = world_at_rest();
+  w.problem.priors.electrical_length_m[1] += 3.0;
+  w.problem.priors.electrical_length_sigma_m[1] = 0.5;
+  EXPECT_NEAR(cost_of(w, w.truth), 0.5 * std::pow(3.0 / 0.5, 2), 1e-9);
+  w.truth.ports[1].electrical_length_m += 3.0;
+  EXPECT_NEAR(cost_of(w, w.truth), 0.0, 1e-20);
 }
 
 TEST(PathPrior, GradientOfCommonLeverArmsIsNumeric) {

@@ -89,10 +89,11 @@ inline World make_world(int tags, int reads_per_chain, double scale) {
         {(place((k + 1) * kKnotSpacing_m) - place(k * kKnotSpacing_m)) / scale, kKnotSpacing_m / scale});
   w.problem.reference_scale_m = scale;
   w.problem.flip_probability = w.problem.outlier_probability = 1e-12;
-  w.problem.priors.electrical_length_m = 4.0;
   for (const rfmvo::PortState& port : s.ports) {
     w.problem.priors.lever_arm_C.push_back(port.lever_arm_C);
-    w.problem.priors.lever_arm_sigma_m.push_back(0.003);
+    w.problem.priors.lever_arm_sigma_m.emplace_back(0.003, 0.003, 0.003);
+    w.problem.priors.electrical_length_m.push_back(4.0);
+    w.problem.priors.electrical_length_sigma_m.push_back(10.0);
   }
   for (int t = 0; t < tags; ++t) {
     auto& reads = w.problem.reads.emplace_back();

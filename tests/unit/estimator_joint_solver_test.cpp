@@ -22,14 +22,15 @@ constexpr SolverOptions kToTheEnd{.max_iterations = 60, .step_tolerance = 1e-13}
 // Truth is the exact minimum: no noise, and every prior centred on it.
 World make_exact_world() {
   World w = make_world(5, 24, 1.6);
-  for (PortState& port : w.truth.ports) port.electrical_length_m = w.problem.priors.electrical_length_m;
+  for (PortState& port : w.truth.ports) port.electrical_length_m = w.problem.priors.electrical_length_m[0];
   w.truth.ports[1].offset_rad = 0.0;  // its weak prior (20 rad) is centred on zero
   for (auto& reads : w.problem.reads)
     for (std::size_t i = 0; i < reads.size(); ++i) {
       JointRead& r = reads[i];
       const auto t = static_cast<std::size_t>(&reads - w.problem.reads.data());
       r.phase_rad = r.geometry.wavenumber_rad_m * (r.p_W_A - w.truth.tags[t].p_W_X).norm() +
-                    w.truth.tags[t].offset_rad + r.geometry.frequency_term_rad_m * w.problem.priors.electrical_length_m;
+                    w.truth.tags[t].offset_rad +
+                    r.geometry.frequency_term_rad_m * w.problem.priors.electrical_length_m[0];
     }
   return w;
 }
