@@ -50,15 +50,9 @@ class Section {
                                 std::array<double, N> fallback) {
     const toml::node* node = find(key);
     if (node == nullptr || error_) return fallback;
-    const toml::array* list = node->as_array();
-    std::array<double, N> out{};
-    bool good = list != nullptr && list->size() == N;
-    for (std::size_t i = 0; good && i < N; ++i) {
-      good = list->get(i)->is_number();
-      if (good) out[i] = checked(key, *node, *list->get(i)->value<double>(), unit, -max, max, 0.0);
-    }
-    if (!good) return fail(key, *node, "expects a list of " + std::to_string(N) + " numbers" + in(unit)), fallback;
-    return out;
+    const auto list = list_of_numbers<N>(key, *node, unit, -max, max);
+    if (!list) return fail(key, *node, "expects a list of " + std::to_string(N) + " numbers" + in(unit)), fallback;
+    return *list;
   }
 
   // A number for all three axes, or one for each.
@@ -67,16 +61,9 @@ class Section {
     const toml::node* node = find(key);
     if (node == nullptr || error_) return fallback;
     if (node->is_number()) return Eigen::Vector3d::Constant(number(key, unit, 0, max, fallback.x()));
-    const toml::array* list = node->as_array();
-    Eigen::Vector3d out = fallback;
-    bool good = list != nullptr && list->size() == 3;
-    for (int i = 0; good && i < 3; ++i) {
-      const toml::node& entry = *list->get(static_cast<std::size_t>(i));
-      good = entry.is_number();
-      if (good) out[i] = checked(key, *node, *entry.value<double>(), unit, 0, max, fallback[i]);
-    }
-    if (!good) return fail(key, *node, "expects a number or a list of three" + in(unit)), fallback;
-    return out;
+    const auto list = list_of_numbers<3>(key, *node, unit, 0, max);
+    if (!list) return fail(key, *node, "expects a number or a list of three" + in(unit)), fallback;
+    return {(*list)[0], (*list)[1], (*list)[2]};
   }
 
   // One of two; the first if the key is missing.
@@ -129,6 +116,20 @@ class Section {
 
   void fail(std::string_view key, const toml::node& node, const std::string& what) {
     if (!error_) error_ = Error{ErrorCode::kMalformed, full(key) + ": " + what, place(where_, node)};
+  }
+
+  // Nothing if it is no list of N numbers.
+  template <std::size_t N>
+  std::optional<std::array<double, N>> list_of_numbers(std::string_view key, const toml::node& node,
+                                                       std::string_view unit, double min, double max) {
+    const toml::array* list = node.as_array();
+    if (list == nullptr || list->size() != N) return std::nullopt;
+    std::array<double, N> out{};
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!list->get(i)->is_number()) return std::nullopt;
+      out[i] = checked(key, node, *list->get(i)->value<double>(), unit, min, max, 0.0);
+    }
+    return out;
   }
 
   double checked(std::string_view key, const toml::node& node, double x, std::string_view unit, double min, double max,

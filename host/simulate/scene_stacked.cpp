@@ -19,6 +19,7 @@ constexpr double kThereAndBack_s = 15.0, kDrive_s = 60.0, kBackAndForthWeave_m =
 
 struct Shape {
   double weave_m = kWeave_m;
+  double duration_s = kLength_m / kSpeed_m_s;
   double structured_sigma_rad = 0.3;
   std::size_t tags = 20;
   std::size_t antennas = 2;
@@ -34,7 +35,10 @@ Shape shape_of(const std::string& name) {
   if (name == "stackedmirror") s.forward_looking = true;
   if (name == "purerotation") s.motion = Shape::kTurn;
   if (name == "standstill") s.motion = Shape::kStand;
-  if (name == "backandforth") s.motion = Shape::kBackAndForth;
+  if (name == "backandforth") {
+    s.motion = Shape::kBackAndForth;
+    s.duration_s = kDrive_s;
+  }
   if (name == "onetag") s.tags = 1;
   if (name == "tags300") s.tags = 300;
   return s;
@@ -91,7 +95,7 @@ Scene make_stacked_scene(const Options& options) {
   Scene scene;
   scene.name = options.scene;
   scene.structured_sigma_rad = shape.structured_sigma_rad;
-  scene.frame_times_s = regular_frame_times(shape.motion == Shape::kBackAndForth ? kDrive_s : kLength_m / kSpeed_m_s);
+  scene.frame_times_s = regular_frame_times(shape.duration_s);
   scene.calibration = calibration_of(shape);
   // tags300: a fast reader mode, two reads of each tag a second.
   if (options.scene == "tags300") scene.read_rate_hz = 2.0 * static_cast<double>(shape.tags);
